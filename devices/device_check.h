@@ -1,4 +1,4 @@
-// What stands between the program and a device, layer by layer: there or not, and what mends it.
+// The checks on the way to a device, layer by layer: what was found, and how to fix what fails.
 #pragma once
 #include "devices/emulated_omni.h"
 #include "haptics/device.h"
@@ -13,34 +13,36 @@ namespace palpa {
 
 enum class CheckOutcome {
     Ok,
-    Unknown,  // cannot be seen from here; no reason to give up
+    Unknown,  // cannot be determined; opening goes on
     Failed
 };
 
 struct DeviceCheck {
     std::string layer;  // "library", "bus", "permission" ...
     CheckOutcome outcome = CheckOutcome::Ok;
-    std::string found;   // what is there, or why nothing is; lower case, no full stop
-    std::string remedy;  // a command, or what to do by hand; empty where nothing has to be mended
+    std::string found;   // what was found, or why nothing was; lower case, no full stop
+    std::string remedy;  // a command, or what to do by hand; empty if nothing needs fixing
 };
 
-// Where a node below /dev is closed to the user.
+// The remedy if this user may not read or write a node below /dev.
 inline constexpr std::string_view udev_remedy =
     "sudo cp devices/udev/70-palpa.rules /etc/udev/rules.d/ && sudo udevadm control --reload && "
     "sudo udevadm trigger";
 
-// What whoever opens a device knows of its surroundings.
+// What is needed to open a device.
 struct DeviceRequest {
-    EmulatedOmniSettings emulated;            // of devices that are not there, and the hand
-    HandOrders* orders = nullptr;             // of a window, for those on the servo's ticks
-    PadLink* pads = nullptr;                  // of a window, which sees game pads
-    std::filesystem::path file = {};          // that a device plays
-    std::filesystem::path system_root = "/";  // above /dev and /sys; another one in tests
+    EmulatedOmniSettings emulated;  // settings of the emulated device and of the hand on it
+    HandOrders* orders =
+        nullptr;  // orders of a window, for devices that run on the servo's clock; may be null
+    PadLink* pads = nullptr;          // game pads of a window; may be null
+    std::filesystem::path file = {};  // file that a device plays, if it plays one
+    std::filesystem::path system_root =
+        "/";  // folder that contains /dev and /sys; tests use another one
 };
 
 struct OpenedDevice {
-    std::unique_ptr<Device> device;   // null where it cannot be used
-    std::vector<DeviceCheck> checks;  // in order, to the first one that it cannot do without
+    std::unique_ptr<Device> device;   // null if the device cannot be used
+    std::vector<DeviceCheck> checks;  // in order, up to the first failure that prevents the use
 };
 
 }  // namespace palpa

@@ -1,5 +1,4 @@
-// What the system shows of devices that are plugged in, Linux's /sys and /dev: on other systems
-// nothing is found.
+// Finds connected devices in Linux's /sys and /dev. On other systems nothing is found.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -15,23 +14,25 @@ struct UsbId {
 };
 
 struct FoundDevice {
-    std::string where;                          // "USB 2988:0302 (Touch)"
-    std::vector<std::filesystem::path> nodes;   // below /dev, that belong to it
-    std::vector<std::filesystem::path> closed;  // of those, which this user may not read and write
+    std::string where;                         // "USB 2988:0302 (Touch)"
+    std::vector<std::filesystem::path> nodes;  // nodes below /dev that belong to the device
+    std::vector<std::filesystem::path>
+        closed;  // those of them that this user may not read and write
 };
 
-// Whether this user may read and write it.
+// Whether this user may read and write the node.
 bool is_open_to_user(const std::filesystem::path& node);
 
-// USB devices with one of these ids, with their serial and hidraw nodes. `root` stands for "/".
+// Finds USB devices with one of these ids, with their serial and hidraw nodes. `root` is the folder
+// that contains /sys and /dev.
 std::vector<FoundDevice> find_usb_devices(const std::filesystem::path& root,
                                           std::span<const UsbId> ids);
 
-// The same with their node of the bus itself, for those that no driver of the system serves.
+// The same with the node of the device on the bus itself, for devices without a system driver.
 std::vector<FoundDevice> find_raw_usb_devices(const std::filesystem::path& root,
                                               std::span<const UsbId> ids);
 
-// FireWire devices whose maker or model, in their own words, contains `name`, in any case.
+// Finds FireWire devices whose maker or model name contains `name`, in upper or lower case.
 std::vector<FoundDevice> find_firewire_devices(const std::filesystem::path& root,
                                                const std::string& name);
 

@@ -1,4 +1,4 @@
-// The emulated device as a scene describes it, and who holds its handle: a script, a mouse.
+// Builds the emulated device that a scene describes, and the hand on its handle.
 #pragma once
 #include "devices/emulated_omni.h"
 #include "scene/description.h"
@@ -7,12 +7,13 @@
 
 namespace palpa {
 
-// The emulated device and hand that a scene describes; `slot` 0 is the first. `script`: of that
-// hand.
+// Settings of the emulated device and of hand number `slot` (0: the first) of the scene. `script`:
+// the movements of that hand.
 EmulatedOmniSettings build_emulated_omni(const SceneDescription& scene, const HandScript& script,
                                          std::size_t slot = 0);
 
-// Puts a person's mouse in place of the script, and how far ahead of the handle it may be.
+// Replaces the script by a person's mouse, and limits how far the target may be ahead of the
+// handle.
 void give_to_mouse(EmulatedOmniSettings& settings);
 double mouse_reach_m(const EmulatedOmniSettings& settings);
 

@@ -1,4 +1,5 @@
-// The force that a servo asks of a device whose own thread plays it.
+// Passes forces from the servo to a device whose own thread sends them, and fades the force if the
+// servo stops.
 #pragma once
 #include "core/mailbox.h"
 #include "math/vec.h"
@@ -9,15 +10,15 @@ namespace palpa {
 
 class FadingForce {
 public:
-    // Of a force that no newer one follows, because the servo died: after how many ticks it
-    // begins to fade, and in how many it is gone.
+    // If no newer force arrives because the servo has stopped: number of ticks until the force
+    // begins to fade, and number of ticks of the fade.
     static constexpr int stale_ticks = 20, fade_ticks = 50;
 
-    // By the servo, N.
+    // Called by the servo, N.
     void post(const Vec3& newton) noexcept { posted_.post(newton); }
 
-    // By the device's thread, once a tick: the newest one, never more than the motors give; zero
-    // where it is not finite.
+    // Called by the device's thread once a tick: the newest force, limited to `most_newton`; zero
+    // if it is not finite.
     Vec3 take(double most_newton) noexcept {
         age_ticks_ = posted_.read(newest_) ? 0 : age_ticks_ + 1;
         if (!newest_.allFinite()) return Vec3::Zero();

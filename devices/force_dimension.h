@@ -25,27 +25,28 @@
 namespace palpa {
 
 struct ForceDimensionSettings {
-    std::optional<std::filesystem::path> library;  // nothing: where it is installed
-    double retry_s = 1;                            // between two looks for a device that was lost
-    bool is_paced = true;                          // else as fast as the library answers
+    std::optional<std::filesystem::path> library;  // unset: the installed library
+    double retry_s = 1;                            // s between two searches for a lost device
+    bool is_paced = true;                          // false: as fast as the library answers
 };
 
-// Opens the first device that is free. One that asks for its calibration is opened; until that is
-// done its readings are not valid, and status() says so.
+// Opens the first free device. A device that needs calibration is opened too; until it is
+// calibrated its readings are invalid and status() says so.
 OpenedDevice open_force_dimension(const ForceDimensionSettings& settings,
                                   const DeviceRequest& request);
 
-// As in the list of devices: PALPA_FORCE_DIMENSION of the environment is the library.
+// For the list of devices. The environment variable PALPA_FORCE_DIMENSION names the library.
 OpenedDevice open_force_dimension_device(const DeviceRequest& request);
 
-// On USB.
+// Whether a device is on USB.
 bool is_force_dimension_there(const DeviceRequest& request);
 
 // Made by open_force_dimension().
 class ForceDimension final : public Device {
 public:
-    // So many ticks in a row fail until the device counts as lost; the status is asked for every
-    // so many; after so many the motors are asked for again where the device let go of its own.
+    // Numbers of ticks: failures in a row after which the device counts as lost; between two
+    // queries of the status; until the motors are switched on again after the device switched them
+    // off.
     static constexpr int lost_ticks = 20, status_ticks = 50, refused_ticks = 1000;
 
     // Takes an open device, and starts its thread.
@@ -58,7 +59,8 @@ public:
     void write(const Vec3& force_newton) noexcept override { forces_.post(force_newton); }
     std::string_view status() const noexcept override;
 
-    // Force away, motors off, device given back; also at exit(). Again: nothing.
+    // Sets the force to zero, switches the motors off and closes the device; also at exit(). A
+    // second call does nothing.
     void close() noexcept;
 
 private:
@@ -66,7 +68,7 @@ private:
 
     void run() noexcept;
     void tick() noexcept;
-    bool take_pose(DeviceReading& reading) noexcept;  // false where the device does not answer
+    bool take_pose(DeviceReading& reading) noexcept;  // false if the device does not answer
     void look_at_status() noexcept;
     void start() noexcept;
     void stop() noexcept;
@@ -81,18 +83,18 @@ private:
     std::atomic<State> state_{State::Ready};
     std::atomic<bool> is_closing_{false};
 
-    // its own thread
-    std::optional<dhd::Id> id_;  // nothing: it is lost
+    // used by its own thread
+    std::optional<dhd::Id> id_;  // unset: the device is lost
     bool has_wrist_ = false;
     std::uint64_t ticks_ = 0;
     int failed_ticks_ = 0, refused_left_ticks_ = 0;
 
-    // the servo
+    // used by the servo
     DeviceReading last_;
 
     std::mutex mutex_;
     std::condition_variable wake_;
-    bool is_over_ = false;  // for its thread
+    bool is_over_ = false;  // tells its thread to end
     std::thread thread_;
 };
 

@@ -27,9 +27,10 @@ namespace palpa {
 
 class ForceJoystickProtocol final : public HidProtocol {
 public:
-    // From the middle of the stick's way to its end, at the grip; assumed: no device says.
+    // From the middle to the end of the stick's travel, at the grip, m. Assumed, because no device
+    // reports it.
     static constexpr double half_travel_m = 0.050;
-    // At the largest magnitude; assumed likewise.
+    // Force at the largest magnitude, N. Assumed likewise.
     static constexpr double peak_newton = HidDevice::full_newton;
 
     std::string_view name() const noexcept override { return "force-feedback joystick"; }
@@ -45,20 +46,20 @@ public:
     void forget() noexcept override;
     double least_s() const noexcept override { return 0.002; }
 
-    // Takes the report descriptor of the device. What a force needs and it does not have; empty
-    // where it has all, and only then the device can be used.
+    // Reads the report descriptor of the device. Returns what a force needs and the descriptor
+    // lacks; empty if the device can be used.
     std::string use(HidBytes descriptor);
 
 private:
-    // One that can be felt.
+    // One axis with a force.
     struct Axis {
-        HidField place;        // in a report in
-        double direction_deg;  // where a positive magnitude comes from
-        int index;             // of the handle's axes
-        double sign;           // of the stick's on it
+        HidField place;        // field of an input report
+        double direction_deg;  // direction from which a positive magnitude pushes
+        int index;             // index of the handle's axis
+        double sign;           // sign of the stick's axis on it
         std::int64_t block = 0;
-        std::optional<std::int64_t> magnitude = 0;  // that it was sent
-        std::vector<std::uint8_t> report = {};      // that sets the magnitude
+        std::optional<std::int64_t> magnitude = 0;  // last magnitude sent
+        std::vector<std::uint8_t> report = {};      // report that sets the magnitude
     };
     enum class Loaded { Yes, Full, No };
 
@@ -71,13 +72,13 @@ private:
     DeviceCheck start_all(HidLine& line);
 
     HidDescriptor descriptor_;
-    std::vector<Axis> axes_;  // those that have an effect, once it has begun
+    std::vector<Axis> axes_;  // axes with an effect, after begin()
     HidField magnitude_;
     std::optional<HidField> button_;
     Vec3 wanted_newton_ = Vec3::Zero();
 };
 
-// As in the list of devices.
+// For the list of devices.
 OpenedDevice open_force_joystick(const DeviceRequest& request);
 
 }  // namespace palpa

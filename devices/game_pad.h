@@ -1,7 +1,7 @@
-// A game pad that the window sees, of the kind that the windowing library knows the buttons of
-// (Xbox-class). Without force. It senses no place: the sticks are the speed of a handle that is not
-// there (devices/rate_handle.h), on the servo's clock, a tick a read. Left stick: right and up;
-// right stick: towards the person, and turned about the upright. The right shoulder is the clutch.
+// A game pad of the window whose buttons the windowing library knows (Xbox-class), without force.
+// It senses no position: the sticks set the speed of a virtual handle (devices/rate_handle.h) on
+// the servo's clock, one tick per read. Left stick: right and up; right stick: towards the person,
+// and turning about the vertical axis. The right shoulder button is the clutch.
 #pragma once
 #include "devices/device_check.h"
 #include "devices/rate_handle.h"
@@ -14,11 +14,11 @@ namespace palpa {
 
 class GamePad final : public Device {
 public:
-    // As the other pads' (devices/sony_pad.h); a stick that springs back is not quite in the
-    // middle.
+    // As for the other pads (devices/sony_pad.h): a stick that springs back does not rest exactly
+    // in the middle.
     static constexpr double dead_zone = 0.12;
     static constexpr double fastest_m_per_s = 0.060, fastest_rad_per_s = 1.6;
-    // A window that hangs posts nothing: after so many ticks the sticks count as let go.
+    // Number of ticks without news from the window after which the sticks count as released.
     static constexpr int silent_ticks = 250;
 
     explicit GamePad(PadLink& link);
@@ -37,7 +37,7 @@ private:
     std::uint64_t ticks_ = 0;
 };
 
-// Without a window there is none.
+// Fails without a window.
 OpenedDevice open_game_pad(const DeviceRequest& request);
 bool is_game_pad_there(const DeviceRequest& request);
 

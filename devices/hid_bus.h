@@ -1,5 +1,5 @@
-// Human interface devices on USB and Bluetooth, through hidapi: which there are, and a line to one.
-// https://github.com/libusb/hidapi, 0.13; on Linux its hidraw form.
+// Lists human interface devices (HID) on USB and Bluetooth, and opens a connection to one, through
+// hidapi. https://github.com/libusb/hidapi, 0.13; on Linux its hidraw variant.
 #pragma once
 #include "devices/device_nodes.h"
 
@@ -18,50 +18,52 @@ namespace palpa {
 struct HidPlace {
     std::string path;  // "/dev/hidraw3"
     UsbId id;
-    std::uint16_t usage_page = 0, usage = 0;  // 0 where the system does not tell
+    std::uint16_t usage_page = 0, usage = 0;  // 0 if the system does not report it
     bool is_bluetooth = false;
-    std::string product;  // in its own words
+    std::string product;  // product name as the device reports it
 };
 
-// A report with its number first; 0 of a device that does not number them.
+// A report that begins with its number; 0 for a device without report numbers.
 using HidBytes = std::span<const std::uint8_t>;
 
-// The longest report of the devices here is 78 bytes; a hidraw read cuts what is longer.
+// The longest report of the supported devices has 78 bytes; a hidraw read cuts longer ones.
 inline constexpr std::size_t longest_hid_report = 128;
 
-// Empty where hidapi cannot be used.
+// Empty if hidapi cannot be used.
 std::vector<HidPlace> list_hids();
 
-// "0.13.1", or empty where hidapi cannot be used.
+// Such as "0.13.1"; empty if hidapi cannot be used.
 std::string hidapi_version();
 
-// What a device says of its reports (devices/hid_descriptor.h): hidapi 0.13 does not give it, so it
-// is Linux's /sys that is read. Empty elsewhere, and where it cannot be read.
+// The report descriptor of a device (devices/hid_descriptor.h). hidapi 0.13 does not provide it, so
+// it is read from Linux's /sys. Empty on other systems, and if it cannot be read.
 std::vector<std::uint8_t> read_report_descriptor(const std::string& path);
 
-// Whether a line of this program is open to it.
+// Whether this program has a connection to it.
 bool is_in_use(const std::string& path);
 
-// Used by one thread.
+// A connection to one device, for use by one thread.
 class HidLine {
 public:
-    // False where it cannot be opened, and why() says why: one line to a path at a time.
+    // False if it cannot be opened; why() gives the reason. Only one connection to a path at a
+    // time.
     bool open(const std::string& path);
     void close() noexcept { handle_.reset(); }
     bool is_open() const noexcept { return handle_ != nullptr; }
     const std::string& why() const noexcept { return why_; }
 
-    // Waits for a report for as long. Its bytes in `into`; 0: none came; -1: the device is gone.
+    // Waits up to `wait_ms` for a report and copies it to `into`. Returns its number of bytes; 0:
+    // no report; -1: the device is gone.
     int read(std::span<std::uint8_t> into, int wait_ms) noexcept;
 
-    // False: the device is gone.
+    // Returns false if the device is gone.
     bool write(HidBytes report) noexcept;
 
     // The same for a feature report.
     bool write_feature(HidBytes report) noexcept;
 
-    // Asks for the feature report of a number. How many bytes came `into`, the number first; -1:
-    // the device gives none.
+    // Reads the feature report with this number into `into`, which begins with the number. Returns
+    // the number of bytes; -1: the device does not provide it.
     int read_feature(std::uint8_t number, std::span<std::uint8_t> into) noexcept;
 
 private:

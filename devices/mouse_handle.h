@@ -20,14 +20,14 @@
 namespace palpa {
 
 struct MouseHandleSettings {
-    double stiffness_N_per_m = 200;  // K
-    double damping_N_s_per_m = 4;    // B
-    double peak_force_newton = 3.3;  // as the emulated Omni's: scenes look as they feel there
-    Vec3 half_workspace_m = {0.5, 0.5, 0.5};  // a mouse has none: this stands for that
-    HandOrders* orders = nullptr;             // of the window; null: p stays in the middle
+    double stiffness_N_per_m = 200;           // K
+    double damping_N_s_per_m = 4;             // B
+    double peak_force_newton = 3.3;           // as for the emulated Omni, so that scenes feel alike
+    Vec3 half_workspace_m = {0.5, 0.5, 0.5};  // a mouse has no workspace; this stands for one
+    HandOrders* orders = nullptr;  // targets from the window; null: p stays in the middle
 };
 
-// The spring and damper that a hand of that grip has for the handle; the medium one's for nobody.
+// Spring and damper of a hand with this grip; without a grip those of the medium one.
 MouseHandleSettings mouse_handle_of(const std::optional<HandModel>& hand) noexcept;
 
 // Time is the servo's: each write moves the handle on by one tick, exactly where p and F are held
@@ -52,7 +52,8 @@ private:
     MouseHandleSettings settings_;
     DeviceSpec spec_;
     OrderedTime time_;
-    double kept_;  // e^(-K T/B): of the way to the place of rest, what a tick leaves
+    double
+        kept_;  // e^(-K T/B): share of the distance to the rest position that remains after a tick
     std::uint64_t tick_ = 0;
     Vec3 wish_m_ = Vec3::Zero(), handle_m_ = Vec3::Zero();
 };

@@ -1,4 +1,4 @@
-// The devices that the program knows, by name: a list, written out.
+// The list of all devices by name, and how to open one.
 #pragma once
 #include "devices/device_check.h"
 
@@ -9,31 +9,32 @@
 namespace palpa {
 
 struct DeviceMaker {
-    std::string_view name;       // as --device takes it
-    std::string_view summary;    // what it is, in a few words
-    bool is_emulated = false;    // always there, and its time is the servo's
-    bool is_led = false;         // by the window's mouse and keys, where there is one
-    bool needs_window = false;   // nobody leads it without one
-    std::string_view file = {};  // of one that plays it, as --device NAME:FILE gives it; else empty
-    // A quick look whether it is plugged in; null where that is not to be seen.
+    std::string_view name;      // name for --device
+    std::string_view summary;   // short description
+    bool is_emulated = false;   // always available; runs on the servo's clock
+    bool is_led = false;        // moved by the window's mouse and keys, if there is a window
+    bool needs_window = false;  // cannot be used without a window
+    std::string_view file =
+        {};  // placeholder of the file for --device NAME:FILE; empty for devices without a file
+    // Quick check whether the device is connected; null if that cannot be checked.
     bool (*is_there)(const DeviceRequest& request) = nullptr;
-    // Looks at every layer in order and opens the device if it can. Plays no force. Never throws
-    // because something is missing: the checks say so.
+    // Checks every layer in order and opens the device if possible. Sends no force. Does not throw
+    // if something is missing: the checks report it.
     OpenedDevice (*open)(const DeviceRequest& request) = nullptr;
 };
 
-// In the order in which they are listed. Another device is another line in open_device.cpp.
+// In listing order. To add a device, add a line in open_device.cpp.
 std::span<const DeviceMaker> device_makers() noexcept;
 
-// `name` as --device takes it, with ":FILE" where the device plays one. Throws LoadError that lists
-// the names, or says that the file is missing or too much.
+// The maker for `name` as given to --device, with ":FILE" if the device plays a file. Throws
+// LoadError that lists the names, or says that the file is missing or not allowed.
 const DeviceMaker& device_maker_called(const std::string& name);
 
-// What stands behind the colon of such a name; empty: nothing.
+// The part of such a name after the colon; empty: none.
 std::string file_of(const std::string& name);
 
-// With a device in it: otherwise throws LoadError that says which layer failed and what mends it.
-// The file of the name takes the place of the request's.
+// Opens the device. Throws LoadError with the failed layer and its remedy. The file in the name
+// replaces the one of the request.
 OpenedDevice open_device(const std::string& name, DeviceRequest request);
 
 }  // namespace palpa

@@ -25,26 +25,27 @@
 namespace palpa {
 
 struct OpenHapticsSettings {
-    std::optional<std::filesystem::path> library;  // nothing: where it is installed
-    std::string device_name;  // as the maker's set-up program has it; empty: the default device
-    double retry_s = 1;       // between two looks for a device that was lost
+    std::optional<std::filesystem::path> library;  // unset: the installed library
+    std::string device_name;  // name in the maker's set-up program; empty: the default device
+    double retry_s = 1;       // s between two searches for a lost device
 };
 
-// Nothing is waited for but the library's own start. A device that asks for its inkwell is opened;
-// until it has been there its readings are not valid, and status() says so.
+// Waits only for the start of the library. A device that must be put into its inkwell is opened
+// too; until then its readings are invalid and status() says so.
 OpenedDevice open_haptics(const OpenHapticsSettings& settings, const DeviceRequest& request);
 
-// As in the list of devices: PALPA_OPENHAPTICS and PALPA_OMNI of the environment are library and
-// name.
+// For the list of devices. The environment variables PALPA_OPENHAPTICS and PALPA_OMNI name the
+// library and the device.
 OpenedDevice open_omni(const DeviceRequest& request);
 
-// On USB or FireWire; one on Ethernet does not show.
+// Whether a device is on USB or FireWire; a device on Ethernet is not found.
 bool is_omni_there(const DeviceRequest& request);
 
 // Made by open_haptics(). The library serves one device a process; a second one is not opened.
 class OpenHaptics final : public Device {
 public:
-    // Without force after the last error: the device lets go, then the safety chain begins anew.
+    // Number of ticks without force after the last error: the device switches off, then the safety
+    // chain starts again.
     static constexpr int warm_ticks = 1000, refused_ticks = 100;
 
     // Takes an open device, and starts the scheduler.
@@ -57,10 +58,11 @@ public:
     void write(const Vec3& force_newton) noexcept override { forces_.post(force_newton); }
     std::string_view status() const noexcept override;
 
-    // The library's last error; success if there was none.
+    // The last error of the library, or success.
     hd::Code last_error() const noexcept { return last_error_; }
 
-    // Force away, scheduler stopped, device given back; also at exit(). Again: nothing.
+    // Sets the force to zero, stops the scheduler and closes the device; also at exit(). A second
+    // call does nothing.
     void close() noexcept;
 
 private:
@@ -68,9 +70,9 @@ private:
 
     // The library's thread.
     hd::Code tick() noexcept;
-    bool update_calibration() noexcept;  // true where positions can be believed
+    bool update_calibration() noexcept;  // true if positions are valid
     DeviceReading take_reading() noexcept;
-    bool take_errors() noexcept;  // false where the reading is not to be believed
+    bool take_errors() noexcept;  // false if the reading is not valid
     // The third one.
     void keep();
     void start() noexcept;
@@ -89,19 +91,19 @@ private:
     std::atomic<State> state_{State::Starting};
     std::atomic<hd::Code> last_error_{hd::success};
     std::atomic<bool> is_lost_{false};
-    std::atomic<bool> is_closing_{false};   // from now on no force
-    std::atomic<bool> played_zero_{false};  // since then
+    std::atomic<bool> is_closing_{false};   // no force from now on
+    std::atomic<bool> played_zero_{false};  // zero force was sent since then
 
     // the library's thread
     std::uint64_t ticks_ = 0;
-    int warm_left_ticks_ = 0, refused_left_ticks_ = 0;  // still without force
+    int warm_left_ticks_ = 0, refused_left_ticks_ = 0;  // remaining ticks without force
 
     // the servo
     DeviceReading last_;
 
     std::mutex mutex_;
     std::condition_variable wake_;
-    bool is_over_ = false;  // for the third thread
+    bool is_over_ = false;  // tells the third thread to end
     std::thread keeper_;
 };
 

@@ -1,6 +1,6 @@
-// OpenHaptics' device library (HDAPI), the maker's own for the Phantom Omni and the Touch, found
-// while the program runs. What it exports is declared here from the documented interface: names,
-// types and numbers. It has one scheduler and one current device a process, whoever opens it.
+// Interface to OpenHaptics' device library (HDAPI) of the maker of the Phantom Omni and the Touch,
+// loaded at run time. Its names, types and numbers are declared here from the documented interface.
+// It has one scheduler and one current device for each process.
 #pragma once
 #include <filesystem>
 #include <optional>

@@ -1,4 +1,4 @@
-// The time of a device that lives on the servo's ticks: it stands still where a window says so.
+// The clock of a device that runs on the servo's ticks; a window can stop it or restart it.
 #pragma once
 #include "haptics/hand.h"
 
@@ -6,10 +6,10 @@ namespace palpa {
 
 class OrderedTime {
 public:
-    // `orders`: null where nobody posts any, and time always goes on.
+    // `orders`: null if nobody posts orders; then time never stops.
     explicit OrderedTime(HandOrders* orders) noexcept : orders_(orders) {}
 
-    // Once a tick: takes the newest order. False where time stands still.
+    // Call once a tick: takes the newest order. Returns false while time stands still.
     bool step() noexcept {
         was_restarted_ = false;
         if (!orders_) return true;
@@ -23,14 +23,14 @@ public:
         return true;
     }
 
-    // By the order that the last step took.
+    // Whether the order of the last step restarted the clock.
     bool was_restarted() const noexcept { return was_restarted_; }
     const Vec3& target_m() const noexcept { return order_.target_m; }
 
 private:
     HandOrders* orders_;
     HandOrder order_;
-    int granted_ticks_ = 0;  // that may still go by while frozen
+    int granted_ticks_ = 0;  // ticks that may still pass while the clock is stopped (single steps)
     bool was_restarted_ = false;
 };
 

@@ -1,5 +1,5 @@
-// Handles that move by themselves, as a table says: a recording's trace, or a script that somebody
-// wrote. Nobody holds them, and no force moves them.
+// Handles that follow a table of times and positions: a recorded trace, or a script. Nobody holds
+// them, and no force moves them.
 #pragma once
 #include "devices/ordered_time.h"
 #include "haptics/device.h"
@@ -15,8 +15,8 @@
 
 namespace palpa {
 
-// Where the handle is at a time. Between two rows it goes straight and evenly, before the first and
-// after the last it rests.
+// Position of the handle at one time. Between two rows it moves at constant velocity; before the
+// first and after the last row it rests.
 struct PlayedRow {
     double time_s = 0;
     Vec3 handle_m = Vec3::Zero();
@@ -24,31 +24,30 @@ struct PlayedRow {
     bool clutch = false;           // pressed until the next row
 };
 
-// Where no row may be beyond, from the middle, either way.
+// Largest distance of a row from the middle along each axis, m.
 inline constexpr double played_reach_m = 0.5;
 
-// Comma-separated values under a line of names: time_s, handle_x_m, handle_y_m, handle_z_m and, if
-// need be, clutch (0 or 1), handle_turn_x_rad, handle_turn_y_rad, handle_turn_z_rad, in any order;
-// times ascend. Empty lines and those that begin with '#' are passed over. Throws LoadError that
-// names `file` and the line.
+// Parses comma-separated values with a header line: time_s, handle_x_m, handle_y_m, handle_z_m and,
+// optionally, clutch (0 or 1), handle_turn_x_rad, handle_turn_y_rad, handle_turn_z_rad, in any
+// order; times must ascend. Empty lines and lines that begin with '#' are ignored. Throws LoadError
+// with `file` and the line.
 std::vector<PlayedRow> parse_script(std::string_view text, const std::string& file);
 
-// The same of a recorded trace, of whose columns others are passed over, as is what stands behind
-// the last whole line of one that was cut off.
+// The same for a recorded trace: other columns are ignored, and so is an incomplete last line.
 std::vector<PlayedRow> parse_trace(std::string_view text, const std::string& file);
 
-// Of a file: a script; a trace, or the folder of a recording with one.
+// Reads a file: a script; or a trace, or the folder of a recording with a trace.
 std::vector<PlayedRow> read_trace(const std::filesystem::path& recording);
 std::vector<PlayedRow> read_script(const std::filesystem::path& file);
 
 struct PlayedHandleSettings {
     std::string name = "script";
     std::vector<PlayedRow> rows = {};  // times ascending; none: it rests in the middle
-    HandOrders* orders = nullptr;      // of a window: it begins anew, or stands still
+    HandOrders* orders = nullptr;      // orders of a window to restart or stop
 };
 
-// Time is the servo's: each write moves it on by one tick. Played at the ticks at which they were
-// recorded, rows are what was read then, to the last digit.
+// Runs on the servo's clock: each write() advances it by one tick. If played at the recorded ticks,
+// the readings equal the recorded ones to the last digit.
 class PlayedHandle final : public Device {
 public:
     explicit PlayedHandle(PlayedHandleSettings settings);
@@ -58,14 +57,15 @@ public:
     void write(const Vec3& force_newton) noexcept override;
 
 private:
-    // At the present tick.
+    // The row of the present tick.
     PlayedRow row_now() const noexcept;
 
     PlayedHandleSettings settings_;
     DeviceSpec spec_;
     OrderedTime time_;
-    std::uint64_t tick_ = 0, start_tick_ = 0;  // since the beginning; where the table began
-    std::size_t next_ = 0;                     // the first row that is still to come
+    std::uint64_t tick_ = 0,
+                  start_tick_ = 0;  // tick since the start; tick at which the table began
+    std::size_t next_ = 0;          // index of the next row
 };
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// Somebody at an emulated device who looks for the place where nothing is felt.
+// An emulated operator who searches for the place without force.
 #pragma once
 #include "core/draws.h"
 
@@ -8,24 +8,24 @@
 
 namespace palpa {
 
-// Naive: follows what is felt, and is done after a second without force. Careful: then also feels
-// for both ends of the range without force, and takes its middle.
+// Naive: follows the force, and is done after a second without force. Careful: then also finds both
+// ends of the range without force, and takes its middle.
 enum class OperatorManner { Naive, Careful };
 inline constexpr std::array<std::string_view, 2> operator_manner_names{"naive", "careful"};
 
 struct OperatorSettings {
     OperatorManner manner = OperatorManner::Naive;
-    bool has_force = true;             // false: only the picture says
-    double threshold_newton = 0.075;   // weaker forces are not noticed
-    double approach_m_per_s = 0.045;   // of the hand, while the molecules are apart
-    double guess_angstrom = 2.77;      // where it believes the place to be, by the picture
-    double handle_m_per_angstrom = 0;  // A_d, for hands that follow the picture alone
+    bool has_force = true;             // false: only the picture shows the place
+    double threshold_newton = 0.075;   // detection threshold of forces
+    double approach_m_per_s = 0.045;   // speed of the hand while the molecules are apart
+    double guess_angstrom = 2.77;      // place that it estimates from the picture
+    double handle_m_per_angstrom = 0;  // A_d, for operators without force
 };
 
-// Goes in until there is repulsion, then after what is felt in steps that halve wherever it turns
-// round. The force is felt 0.15 s late and with noise, the hand drifts and trembles. How late, how
-// noisy and how unsteady is assumed; so is the spread of guesses by the picture, which is why what
-// is found without force is no prediction.
+// Moves in until it feels repulsion, then follows the force in steps that halve at each reversal.
+// The force is felt with a delay of 0.15 s and noise; the hand drifts and trembles. These numbers
+// are assumed, and so is the spread of estimates from the picture; results without force are
+// therefore inputs, not predictions.
 class SeekingOperator {
 public:
     SeekingOperator(const OperatorSettings& settings, const Draws& draws);
@@ -33,9 +33,9 @@ public:
     // One tick: the force on the hand (N, + pushes outward) and the distance in the picture (Å).
     void feel(double force_newton, double distance);
 
-    // Where the hand wants the handle, outward from where it began.
+    // Target of the handle, m, outward from its start.
     double wish_m() const noexcept { return intended_m_ + unsteady_m_ + tremor_m_; }
-    // Presses the key.
+    // Whether the operator presses the key.
     bool is_done() const noexcept { return is_done_; }
 
 private:
@@ -47,7 +47,7 @@ private:
     double follow_force() noexcept;
     double follow_picture(double distance) noexcept;
     double take_middle() noexcept;
-    // The state's doubt was gone for so long.
+    // Whether the state has been certain for long enough.
     bool has_rested() const noexcept;
 
     OperatorSettings settings_;
@@ -55,7 +55,7 @@ private:
     double tremor_phase_;
 
     // what is felt, N
-    double smooth_newton_ = 0;  // by the skin
+    double smooth_newton_ = 0;  // low-pass of the skin
     std::array<double, 150> under_way_{};
     std::size_t tick_ = 0;
     double noise_newton_ = 0, noise_share_ = 0;

@@ -23,12 +23,13 @@ enum class SonyModel { DualSense, DualShock4 };
 
 class SonyPadProtocol final : public HidProtocol {
 public:
-    // Of a stick's way, which returns to its middle only about; assumed.
+    // Dead zone as a share of a stick's travel, because the stick does not return exactly to its
+    // middle; assumed.
     static constexpr double dead_zone = 0.12;
-    // Where a stick ends; chosen, as for the SpaceMouse.
+    // Speeds at full deflection; chosen, as for the SpaceMouse.
     static constexpr double fastest_m_per_s = 0.060, fastest_rad_per_s = 1.6;
-    // The gyroscope's word is 2000 degrees a second at full; each pad's own calibration differs
-    // by little, and is not asked for. What it says at rest stays below the dead zone.
+    // A full-scale gyroscope value is 2000 degrees per second; the calibration of the single pad is
+    // not read. Values at rest stay below the dead zone.
     static constexpr double gyro_deg_per_s = 2000.0 / 32768, gyro_dead_deg_per_s = 2;
 
     explicit SonyPadProtocol(SonyModel model) noexcept : model_(model) {}
@@ -41,7 +42,7 @@ public:
     HidBytes encode(const HidOutput& output) noexcept override;
     double least_s() const noexcept override;
 
-    // By Bluetooth, until told otherwise by begin().
+    // Sets the connection; begin() determines it.
     void use_bluetooth(bool is_bluetooth) noexcept { is_bluetooth_ = is_bluetooth; }
 
 private:
@@ -50,11 +51,11 @@ private:
 
     SonyModel model_;
     bool is_bluetooth_ = false;
-    std::uint8_t sequence_ = 0;  // of reports by Bluetooth, 0 to 15
+    std::uint8_t sequence_ = 0;  // sequence number of Bluetooth reports, 0 to 15
     std::array<std::uint8_t, 78> report_{};
 };
 
-// As in the list of devices.
+// For the list of devices.
 OpenedDevice open_dualsense(const DeviceRequest& request);
 OpenedDevice open_dualshock4(const DeviceRequest& request);
 

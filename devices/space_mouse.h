@@ -21,11 +21,11 @@ namespace palpa {
 
 class SpaceMouseProtocol final : public HidProtocol {
 public:
-    // Of the way to the end of the cap: a hand at rest on it, and what pushing along one axis
-    // gives of the others; assumed. spacenavd has 2 of 350, and the hand's skill.
+    // Dead zone as a share of the cap's travel, for a resting hand and for crosstalk between axes;
+    // assumed. spacenavd uses 2 of 350.
     static constexpr double dead_zone = 0.06;
     static constexpr double full_count = 350;
-    // At the end: the box in two seconds, a quarter turn in one; chosen.
+    // Speeds at full deflection: across the box in two seconds, a quarter turn in one; chosen.
     static constexpr double fastest_m_per_s = 0.060, fastest_rad_per_s = 1.6;
 
     std::string_view name() const noexcept override { return "SpaceMouse"; }
@@ -43,7 +43,7 @@ private:
     std::optional<bool> is_lit_;
 };
 
-// As in the list of devices.
+// For the list of devices.
 OpenedDevice open_space_mouse(const DeviceRequest& request);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// Headers that most files want, compiled once. Every file still includes what it uses.
+// Precompiled headers that most files use. Every file still includes what it uses.
 #pragma once
 #include <fmt/format.h>
 #include <Eigen/Core>

@@ -1,4 +1,4 @@
-// A film of the window while a person works: pictures are written, and the film is made, beside.
+// Records a film of the window during a session: a thread writes the pictures and makes the film.
 #pragma once
 #include "render/film.h"
 #include "render/picture.h"
@@ -18,25 +18,25 @@ class FilmRecorder {
 public:
     using Clock = std::chrono::steady_clock;
 
-    // Begins now. Throws LoadError as Film does.
+    // Begins to record. Throws LoadError as Film does.
     explicit FilmRecorder(const FilmSettings& settings);
     FilmRecorder(const FilmRecorder&) = delete;
     FilmRecorder& operator=(const FilmRecorder&) = delete;
-    ~FilmRecorder();  // makes the film of what there is
+    ~FilmRecorder();  // makes the film from the pictures so far
 
-    // Whether a picture is wanted now.
+    // Whether a picture is due now.
     bool is_due() const;
-    // It stands for all that were due since the last one. One of another size than the first ends
-    // the film.
+    // Adds a picture, which also stands for those that were due since the last one. A picture of
+    // another size ends the film.
     void add(Picture picture);
-    // No more pictures; the film is made.
+    // Ends recording and makes the film.
     void end();
 
     bool is_ended() const noexcept { return is_ended_; }
     double filmed_s() const;
-    // Pictures that have still to be written.
+    // Number of pictures not yet written.
     std::size_t waiting() const;
-    // What became of it, a sentence, once it is known.
+    // The outcome as a sentence, once it is known.
     std::optional<std::string> outcome() const;
 
 private:
@@ -49,7 +49,7 @@ private:
     void write_pictures();
 
     const FilmSettings settings_;
-    Film film_;  // the thread's
+    Film film_;  // used by the thread
     const Clock::time_point start_ = Clock::now();
     std::size_t taken_ = 0;
     std::uint32_t width_ = 0, height_ = 0;

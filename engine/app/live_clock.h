@@ -1,5 +1,5 @@
-// The time that the threads of a live session run by. Tests put a clock in its place that does not
-// depend on the machine.
+// The clock of the threads of a live session. Tests replace it by one that does not depend on the
+// machine.
 #pragma once
 #include <chrono>
 #include <condition_variable>
@@ -19,11 +19,11 @@ public:
 
     virtual Moment now() noexcept;
 
-    // The servo's thread, until its next tick.
+    // Called by the servo's thread: waits until its next tick.
     virtual void wait_for_tick(Moment moment);
 
-    // The simulation's thread, until its next period or until `is_called`, which `called`
-    // announces. Returns is_called().
+    // Called by the simulation's thread: waits until its next period or until `is_called`, which
+    // `called` announces. Returns is_called().
     virtual bool wait_for_period(Moment moment, std::unique_lock<std::mutex>& lock,
                                  std::condition_variable& called,
                                  const std::function<bool()>& is_called);

@@ -1,6 +1,6 @@
-// A scene that runs in real time: the servos of all hands at 1 kHz and the simulation at its
-// declared period, each on a thread of its own, a third that keeps the journal, and what a fourth
-// one, with the window, may ask of them and see of them.
+// Runs a scene in real time: a thread with the 1 kHz servos of all hands, a thread with the
+// simulation at its declared period, a thread that writes the journal, and the interface for the
+// window's thread.
 #pragma once
 #include "app/live_clock.h"
 #include "core/ring.h"
@@ -36,42 +36,41 @@
 
 namespace palpa {
 
-// A device in a hand. `orders`: of an emulated device's hand; null where it cannot stand still.
+// The device of one hand. `orders`: of an emulated device's hand; null if it cannot be stopped.
 struct LiveDevice {
     Device* device = nullptr;
     HandOrders* orders = nullptr;
 };
 
-// What the window shows of a hand.
+// State of a hand for the window.
 struct LiveHand {
-    AtomRange held;                        // atoms in hand, as they are picked; none: it is empty
-    Vec3 grabbed_angstrom = Vec3::Zero();  // the reference atom in hand, in the world
-    std::string held_address;              // as an edit takes it; empty: nothing is held
+    AtomRange held;                        // atoms in hand, as for picking; none: the hand is empty
+    Vec3 grabbed_angstrom = Vec3::Zero();  // position of the reference atom in hand, world frame
+    std::string held_address;              // address for edits; empty: nothing is held
     ContactModel contact;
 };
 
-// What the window shows, all of one moment between two steps.
+// All that the window shows, consistent for one moment between two steps.
 struct LiveFrame {
-    FrameScene picture;  // its camera is the window's business
+    FrameScene picture;  // the window sets its camera
     std::vector<LiveHand> hands;
-    std::shared_ptr<const AtomDirectory> atoms;  // what picks mean
-    std::vector<glm::vec3> places;               // Å, of all atoms, drawn or not
-    AtomRange framed;                            // what the first view frames; none: everything
-    std::vector<ViewLabel> labels;               // of the picture
-    std::vector<LegendEntry> legend;             // of its colours
-    Readout readout;                             // its contact is the first hand's
-    // What a person made of the world and did not undo.
+    std::shared_ptr<const AtomDirectory> atoms;  // names of picked atoms
+    std::vector<glm::vec3> places;               // positions of all atoms, Å, drawn or not
+    AtomRange framed;                            // atoms that the first view frames; none: all
+    std::vector<ViewLabel> labels;               // labels in the picture
+    std::vector<LegendEntry> legend;             // colour legend
+    Readout readout;                             // readings; the contact is that of the first hand
+    // Edits by the person that were not undone.
     std::shared_ptr<const std::vector<EditDescription>> edits{};
 };
 
-// The devices must outlive the session, and belong to its servo thread meanwhile.
+// The devices must outlive the session; only its servo thread may use them meanwhile.
 class LiveSession {
 public:
-    // Loads the scene and starts all threads. `devices` are of the hands of the scene, in their
-    // order; hands beyond these stand still. `clock`: null is the machine's. `server` serves the
-    // session and belongs to its simulation's thread meanwhile; null: nobody does. `on_stage` hears
-    // how far loading is. Throws
-    // LoadError, and where a device must not be run with the scene's period (check_period).
+    // Loads the scene and starts all threads. `devices`: in the order of the scene's hands; hands
+    // without one stand still. `clock`: null for the machine's clock. `server`: serves the session
+    // on the simulation's thread; may be null. `on_stage` receives the progress of loading. Throws
+    // LoadError, also if a device must not be run with the scene's period (check_period).
     LiveSession(const SceneDescription& scene, const ViewSettings& view,
                 std::span<const LiveDevice> devices, LiveClock* clock = nullptr,
                 FrameServer* server = nullptr, const std::optional<PlaybackChoice>& playback = {},
@@ -85,24 +84,25 @@ public:
 
     void send(const Command& command);
 
-    // Puts another device in a hand's place, which takes hold of the molecule where it is: no
-    // force, then quiet cycles and ramp. Waits for the step that is under way; the device before is
-    // the caller's again. Throws LoadError, and changes nothing, where the other one must not be
-    // run with the present period.
+    // Replaces the device of a hand. The new one takes hold of the molecule where it is: no force
+    // at first, then quiet cycles and a ramp. Waits for the running step; afterwards the previous
+    // device belongs to the caller again. Throws LoadError and changes nothing if the new device
+    // must not be run with the present period.
     void change_device(Device& device, HandOrders* orders, std::size_t slot = 0);
 
-    // Where a live hand wants the handle, m.
+    // Sets the target of a live hand, m.
     void move_hand(const Vec3& target_m, std::size_t slot = 0);
 
-    // The newest frame; asks for the next one. False if none came since the last call.
+    // Reads the newest frame and requests the next one. False if there is none since the last call.
     bool read_frame(LiveFrame& frame);
 
-    // The world between two steps; waits for the one that is under way.
+    // A copy of the world between two steps; waits for the running step.
     World copy_world();
 
-    // Every servo tick in its order, as long as somebody takes them out: of all hands, by slot.
+    // Takes out the servo ticks in order, for all hands by slot. Ticks are lost if nobody takes
+    // them out.
     bool pop_ticks(std::span<ServoTick> ticks) noexcept;
-    bool pop_tick(ServoTick& tick) noexcept;  // of the first hand
+    bool pop_tick(ServoTick& tick) noexcept;  // ticks of the first hand
     std::size_t hands() const noexcept { return devices_.size(); }
 
     ServoHealth servo_health() const noexcept;
@@ -110,16 +110,16 @@ public:
     // The server's notes since the last call.
     std::vector<std::string> take_server_notes();
 
-    // Records from now on into the folder, with the journal since the session began. Throws
-    // LoadError where a Recording would, where something is recorded already, and where a
-    // trajectory is played, which no journal has.
+    // Starts recording into the folder; the journal begins at the start of the session. Throws
+    // LoadError as Recording does, if a recording is running already, and if a trajectory is
+    // played, which a journal does not contain.
     void begin_recording(const std::filesystem::path& folder, bool overwrites = false,
                          const std::optional<TrajectorySettings>& trajectory = {});
-    // Throws LoadError where not all could be written.
+    // Throws LoadError if not everything could be written.
     void end_recording();
-    // Seconds that are recorded so far; nothing where nothing is.
+    // Seconds recorded so far; empty if nothing is being recorded.
     std::optional<double> recorded_s();
-    // What a user should know of the recording, a sentence each, since the last call.
+    // Notes on the recording for the user since the last call, one sentence each.
     std::vector<std::string> take_recording_notes();
 
 private:
@@ -145,7 +145,7 @@ private:
     LiveClock machine_clock_;
     LiveClock& clock_;
     std::vector<LiveDevice> devices_;
-    std::vector<HandOrder> orders_;  // as posted last
+    std::vector<HandOrder> orders_;  // orders posted last
     ServoBank servos_;
     std::unique_ptr<Line> line_;
     LiveSimulation simulation_;
@@ -158,7 +158,7 @@ private:
     std::atomic<std::uint64_t> overruns_{0};
     std::atomic<bool> real_time_{false}, locked_{false};
 
-    std::mutex mutex_;  // of the commands
+    std::mutex mutex_;  // guards the commands
     std::condition_variable has_command_;
     std::vector<Command> commands_;
     std::vector<std::string> server_notes_;
@@ -166,15 +166,15 @@ private:
         DeviceEvent event;
         LiveDevice device;
     };
-    std::optional<DeviceChange> device_change_;  // until it is done
+    std::optional<DeviceChange> device_change_;  // pending change of a device
     std::condition_variable device_changed_;
     std::optional<World> copied_world_;
     bool world_wanted_ = false;
     std::condition_variable world_copied_;
-    const bool plays_;  // a trajectory
+    const bool plays_;  // whether it plays a trajectory
     std::atomic<bool> stopping_{false}, servo_stopping_{false}, recorder_stopping_{false};
 
-    // The simulation's thread's own.
+    // Used by the simulation's thread only.
     ViewSettings view_;
     FrameBuilder builder_;
     std::vector<HandPose> poses_;
@@ -183,9 +183,9 @@ private:
         std::make_shared<std::vector<EditDescription>>();
     std::uint64_t edition_ = 0;
     bool step_once_ = false;
-    LiveClock::Moment settled_{};  // after a reset, until the hand rests
+    LiveClock::Moment settled_{};  // after a reset: time until the hand rests
     AtomRange framed_;
-    std::future<void> building_;  // of a long edit
+    std::future<void> building_;  // preparation of a long edit
     std::deque<EditDescription> waiting_edits_;
 
     std::mutex recorder_mutex_;

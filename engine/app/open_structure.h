@@ -1,5 +1,5 @@
-// A structure file becomes a scene, in the window: prepared beside it, with questions where
-// something is missing, and the report of what was decided.
+// Makes a scene from a structure file in the window: prepares it, asks if something is missing, and
+// shows the report.
 #pragma once
 #include "app/window_shell.h"
 
@@ -9,10 +9,10 @@
 
 namespace palpa {
 
-// `files`: a structure, and parameters of its ligands (.str, .rtf, .prm) or their bonds (.sdf,
-// .mol, .mol2). The results go to a new folder below `folder`, named after the structure. Returns
-// the scene's file; nothing where the person cancelled, or no scene can be made of it, which they
-// have read. Throws LoadError with what is wrong with a file.
+// `files`: a structure, and optionally parameters of its ligands (.str, .rtf, .prm) or their bonds
+// (.sdf, .mol, .mol2). Writes the results to a new folder in `folder`, named after the structure.
+// Returns the scene's file; empty if the person cancelled, or no scene can be made, which the
+// report states. Throws LoadError for errors in files.
 std::optional<std::filesystem::path> open_structure(WindowShell& shell,
                                                     std::span<const std::filesystem::path> files,
                                                     const std::filesystem::path& folder);

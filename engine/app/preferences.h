@@ -1,4 +1,4 @@
-// What the program remembers of a person's choices, in a file of theirs: TOML, a few keys.
+// The user's preferences, in a TOML file.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -9,34 +9,35 @@
 namespace palpa {
 
 struct Preferences {
-    std::optional<std::string> device{};    // as --device takes it
-    std::optional<bool> sound{};            // the felt force as a tone
-    std::vector<std::string> recent{};      // scenes that were opened, absolute, the newest first
-    std::optional<double> text_scale{};     // of the window's text, over the display's own
-    std::optional<std::string> language{};  // of the window, "de"; else as the environment says
+    std::optional<std::string> device{};  // name for --device
+    std::optional<bool> sound{};          // force as a tone on or off
+    std::vector<std::string> recent{};    // scenes opened before, absolute paths, newest first
+    std::optional<double> text_scale{};   // scale of the window's text, relative to the display's
+    std::optional<std::string>
+        language{};  // language of the window, "de"; unset: from the environment
 
     friend bool operator==(const Preferences&, const Preferences&) = default;
 };
 
 inline constexpr std::size_t most_recent = 8;
 
-// The file in front of those opened before, once.
+// Puts the file in front of the list, without duplicates.
 std::vector<std::string> add_recent(std::vector<std::string> recent, const std::string& file);
 
 // Throws LoadError that names `file`, line and column.
 Preferences parse_preferences(std::string_view text, const std::string& file);
 std::string format_preferences(const Preferences& preferences);
 
-// palpa/preferences.toml below XDG_CONFIG_HOME, or ~/.config, or APPDATA on Windows; nothing where
-// none of them is set.
+// palpa/preferences.toml below XDG_CONFIG_HOME, ~/.config, or APPDATA on Windows; empty if none is
+// set.
 std::optional<std::filesystem::path> find_preferences_file();
 
-// Where structures that were opened are prepared: palpa/scenes below XDG_DATA_HOME, or
-// ~/.local/share, or APPDATA on Windows; nothing where none of them is set.
+// Folder for prepared structures: palpa/scenes below XDG_DATA_HOME, ~/.local/share, or APPDATA on
+// Windows; empty if none is set.
 std::optional<std::filesystem::path> find_prepared_folder();
 
-// The file and what is in it. One that cannot be read is said in `problem`, counts as empty, and is
-// never written over: whoever wrote it can mend it.
+// The file and its content. If it cannot be read, `problem` says why; it then counts as empty and
+// is never overwritten, so that its author can correct it.
 class PreferencesFile {
 public:
     explicit PreferencesFile(std::optional<std::filesystem::path> file);
@@ -44,10 +45,10 @@ public:
     const Preferences& now() const noexcept { return now_; }
     const std::string& problem() const noexcept { return problem_; }
 
-    // Whether there is a place for them.
+    // Whether preferences can be saved.
     bool can_keep() const noexcept { return file_ && problem_.empty(); }
 
-    // Keeps them on disk. Throws LoadError that says why it cannot.
+    // Saves them. Throws LoadError with the reason if that fails.
     void keep(const Preferences& preferences);
 
 private:

@@ -1,4 +1,4 @@
-// What a person changed and did not save, kept now and then in case the program ends unasked.
+// Saves unsaved changes from time to time, in case the program ends unexpectedly.
 #pragma once
 #include "scene/description.h"
 
@@ -8,24 +8,24 @@
 
 namespace palpa {
 
-// Of one scene in one process. Where it cannot be written it is tried again the next time; nobody
-// is asked.
+// The recovery file of one scene in one process. If it cannot be written, the next call tries
+// again.
 class RecoveryFile {
 public:
     RecoveryFile();
 
     void save(const SceneDescription& scene) noexcept;
-    // The person saved it, or left it as they wanted; otherwise the file stays.
+    // Deletes the file, after the person saved or discarded the changes.
     void forget() noexcept;
 
 private:
     std::optional<std::filesystem::path> folder_, file_;
 };
 
-// Those that programs left that no longer run, the newest first: scenes that can be opened.
+// Recovery files of programs that no longer run, newest first; they can be opened as scenes.
 std::vector<std::filesystem::path> list_recovered();
 
-// Whether it is one of these: it names files elsewhere, by their whole paths.
+// Whether the file is a recovery file. It names other files by their full paths.
 bool is_recovered(const std::filesystem::path& file);
 
 // Removes it.

@@ -1,6 +1,6 @@
-// What of the picture is drawn so that a slow machine still shows 30 of them a second. Effects go
-// first, then pixels, down to half of them either way. Where that does not help, for the time goes
-// elsewhere, nothing is given up.
+// Lowers effects and resolution until a slow machine shows 30 frames per second: first the effects,
+// then pixels, down to half the width and height. If that does not help, because the time is spent
+// elsewhere, nothing is reduced.
 #pragma once
 
 namespace palpa {
@@ -10,12 +10,12 @@ public:
     static constexpr double smallest = 0.5, largest = 1;
     static constexpr double slow_ms = 31, quick_ms = 26;
 
-    // One frame took that long to draw, at the present scale.
+    // Records the drawing time of a frame at the present scale, ms.
     void add_frame(double ms) noexcept;
 
-    // Of width and height, against the window's.
+    // Scale of width and height relative to the window.
     double value() const noexcept { return now_.scale; }
-    // Ambient occlusion and the like.
+    // Whether ambient occlusion and similar effects are on.
     bool has_effects() const noexcept { return now_.effects; }
 
 private:
@@ -27,12 +27,12 @@ private:
     };
     void change(const Level& level) noexcept;
 
-    Level now_, last_;    // last: before it changed
-    double mean_ms_ = 0;  // of about the last ten frames
+    Level now_, last_;    // present level, and the one before the last change
+    double mean_ms_ = 0;  // mean over about ten frames
     double last_mean_ms_ = 0;
-    double effects_cost_ = 1;  // a frame's time with them against that without
-    int frames_ = 0;           // since the level changed
-    int patience_ = 0;         // frames until less is tried again after it was in vain
+    double effects_cost_ = 1;  // ratio of the frame time with effects to that without
+    int frames_ = 0;           // frames since the level changed
+    int patience_ = 0;         // frames until a reduction is tried again after one without success
 };
 
 }  // namespace palpa

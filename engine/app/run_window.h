@@ -24,91 +24,93 @@ namespace palpa {
 class FrameServer;
 class WindowShell;
 
-// A device in the hand's place.
+// The device of a hand in the window.
 struct WindowDevice {
     std::unique_ptr<Device> device;
-    HandOrders* orders = nullptr;  // of one that can stand still
-    double mouse_reach_m = 0;      // how far ahead of its handle a mouse may be; 0: none leads it
+    HandOrders* orders = nullptr;  // null if the device cannot be stopped
+    double mouse_reach_m =
+        0;  // largest distance of the mouse target from the handle, m; 0: not moved by the mouse
 };
 
-// The same of somebody else's, which outlives the window.
+// The same for a device owned by the caller, which outlives the window.
 struct LedDevice {
     Device* device = nullptr;  // null: there is none
     HandOrders* orders = nullptr;
     double mouse_reach_m = 0;
 };
 
-// From what a person may choose. None where `open` is empty.
+// Devices to choose from. None if `open` is empty.
 struct DeviceMenu {
     std::vector<DeviceOffer> offers{};
-    std::string current{};  // the one that the window begins with
-    std::string wanted{};   // to be taken as soon as it is there; empty: none
-    std::function<bool(const std::string& name)> is_there{};      // a quick look
+    std::string current{};  // device at the start
+    std::string wanted{};   // device to use as soon as it is connected; empty: none
+    std::function<bool(const std::string& name)> is_there{};      // quick check for a connection
     std::function<WindowDevice(const std::string& name)> open{};  // throws LoadError
     std::function<void(const std::string& name)> remember{};      // throws LoadError
 };
 
-// The felt force as a tone.
+// The setting of the force as a tone.
 struct SoundChoice {
-    bool is_on = false;                    // to begin with
-    std::function<void(bool)> remember{};  // what the person switched it to; throws LoadError
+    bool is_on = false;                    // state at the start
+    std::function<void(bool)> remember{};  // saves the person's choice; throws LoadError
 };
 
-// A scene as a person changed it.
+// Changes of the scene by the person.
 struct SceneState {
     LiveSettings settings;
     ViewDescription view;
-    std::vector<EditDescription> edits{};  // from the scene's beginning on
+    std::vector<EditDescription> edits{};  // all edits since the start of the scene
 };
 
 struct WindowOptions {
     ViewSettings view{};
-    std::filesystem::path screenshots{"."};            // folder
-    std::optional<std::filesystem::path> last_shot{};  // taken after `last_shot_s`, then it quits
+    std::filesystem::path screenshots{"."};  // folder
+    std::optional<std::filesystem::path>
+        last_shot{};  // file of a screenshot after `last_shot_s`; then the window closes
     Existing last_shot_existing = Existing::Refuse;
     double last_shot_s = 5;
-    HandOrders* orders = nullptr;                   // of an emulated device's hand
-    double mouse_reach_m = 0;                       // as of WindowDevice
-    LedDevice second{};                             // in the scene's second hand, where it has one
-    std::optional<std::filesystem::path> record{};  // folder, from the first moment on
-    bool overwrites = false;                        // a recording in it
-    TrajectorySettings trajectory{};                // of recordings
+    HandOrders* orders = nullptr;  // null without an emulated hand
+    double mouse_reach_m = 0;      // as in WindowDevice
+    LedDevice second{};            // device of the scene's second hand, if it has one
+    std::optional<std::filesystem::path> record{};  // folder for a recording from the start
+    bool overwrites = false;                        // whether an existing recording is overwritten
+    TrajectorySettings trajectory{};                // trajectory settings of recordings
     std::optional<PlaybackChoice> playback{};       // a trajectory to play
-    PadLink* pads = nullptr;                        // where game pads are posted
+    PadLink* pads = nullptr;                        // receives the state of game pads; may be null
     DeviceMenu devices{};
     SoundChoice sound{};
-    // Writes the scene with these settings, shown so, and changed so, and says where; throws
-    // LoadError. Empty: cannot.
+    // Saves the scene with these settings, view and edits, and returns where; throws LoadError.
+    // Empty: saving is not possible.
     std::function<std::string(const SceneState&)> save{};
-    // The same where nobody asked, for a crash; without a word of where. Empty: it does not.
+    // The same for crash recovery, without a message. Empty: not done.
     std::function<void(const SceneState&)> save_for_crash{};
-    std::string notice{};           // to begin with
-    FrameServer* server = nullptr;  // of the simulation's thread meanwhile
+    std::string notice{};           // shown at the start
+    FrameServer* server = nullptr;  // used by the simulation's thread meanwhile
     double most_frames_per_s = 60;
     std::uint64_t lose_device_at = 0;  // frame at which the graphics device is given up, for tests
-    StudyCourse* study = nullptr;      // the window is for this alone: no overlays, one key
-    std::function<void()> on_trial{};  // after each
-    // Of each tick of the first hand: the window ends where it says so; empty: it never does.
+    StudyCourse* study = nullptr;      // shows only this study: no overlays, one key
+    std::function<void()> on_trial{};  // called after each trial
+    // Called for each tick of the first hand; the window closes when it returns true. Empty: never.
     std::function<bool(const ServoTick&)> is_over{};
 };
 
-// What the person wants to see after a scene.
+// What the person opens after a scene.
 struct NextScreen {
-    std::vector<std::filesystem::path> files{};  // to open; none: the start screen
+    std::vector<std::filesystem::path> files{};  // files to open; none: the start screen
 };
 
 struct WindowReport {
     Summary summary;
-    LiveSettings settings;  // as the person left them
+    LiveSettings settings;  // settings at the end
     std::uint64_t frames = 0;
     double median_frame_ms = 0;
-    double render_scale = 1;  // at the end
+    double render_scale = 1;  // render scale at the end
     std::size_t lesson_steps_done = 0;
-    std::optional<NextScreen> next{};  // nothing: they quit
+    std::optional<NextScreen> next{};  // unset: the person quit
 };
 
-// Loads the scene and shows it in the shell's window until the person leaves it. Throws GpuError,
-// LoadError. Where loading is cancelled the report has a next screen and nothing else.
+// Loads the scene and shows it in the shell's window until the person leaves it. Throws GpuError
+// and LoadError. If loading is cancelled, the report contains only the next screen.
 WindowReport run_window(WindowShell& shell, const SceneDescription& scene, Device& device,
                         const WindowOptions& options);
 

@@ -1,4 +1,4 @@
-// A scene as it was set in the window, as a scene file of its own.
+// Saves a scene with the settings of the window as a new scene file.
 #pragma once
 #include "scene/description.h"
 
@@ -7,11 +7,11 @@
 
 namespace palpa {
 
-// Of one session: saved again, its file is replaced. Other files never are.
+// For one session: saving again replaces its own file, never another one.
 class SceneSaver {
 public:
-    // New files are called NAME-2.toml and on, beside the scene's own file, or in `fallback` where
-    // that folder cannot be written.
+    // New files are named NAME-2.toml and so on, beside the scene's file, or in `fallback` if that
+    // folder cannot be written.
     SceneSaver(const std::filesystem::path& scene_file, std::filesystem::path fallback);
 
     // Returns the file. Throws LoadError that says why it cannot be written.

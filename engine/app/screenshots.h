@@ -1,4 +1,4 @@
-// Pictures of the window, under names that are free.
+// Saves screenshots of the window under unused names.
 #pragma once
 #include "gpu/swapchain.h"
 
@@ -6,7 +6,7 @@
 
 namespace palpa {
 
-// As palpa-0001.png and so on in the folder; returns the file. Throws LoadError.
+// Saves palpa-0001.png and so on in the folder; returns the file. Throws LoadError.
 std::filesystem::path save_screenshot(const std::filesystem::path& folder, const WindowShot& shot);
 
 }  // namespace palpa

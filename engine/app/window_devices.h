@@ -1,4 +1,4 @@
-// The list of devices as a window offers it, and which of them it begins with.
+// The devices that a window offers, and the choice of the first one.
 #pragma once
 #include "app/preferences.h"
 #include "app/run_window.h"
@@ -10,25 +10,24 @@
 
 namespace palpa {
 
-// What a person at a window without a choice of their own is given: no motor moves before somebody
-// has asked for it.
+// The default device of a window: no motor moves before somebody has chosen a device with motors.
 inline constexpr const char* first_device = "mouse";
 
-// Those that a person may choose from, and whether each is there.
+// The devices to choose from, and whether each is connected.
 std::vector<DeviceOffer> list_device_offers(const DeviceRequest& request);
 
-// One window's. It and the preferences must outlive the window.
+// The devices of one window. It and the preferences must outlive the window.
 class WindowDevices {
 public:
-    // `emulated`: with a mouse in its hand's place.
+    // `emulated`: settings of the emulated device, moved by the mouse.
     WindowDevices(const EmulatedOmniSettings& emulated, PreferencesFile& preferences);
 
-    // The one that was asked for, or else the one that was chosen last, or else the first. Throws
-    // LoadError where the first of these cannot be opened; where the second cannot, says so in
-    // notice() and opens the third.
+    // Opens the requested device, else the one chosen last, else the default. Throws LoadError if
+    // the requested one cannot be opened; if the one chosen last cannot, notice() says so and the
+    // default is opened.
     WindowDevice open_first(const std::optional<std::string>& asked);
 
-    // Of what open_first() had to say, one line; empty where all is well.
+    // The notice of open_first(), one line; empty if there is none.
     const std::string& notice() const noexcept { return notice_; }
 
     DeviceMenu menu();
@@ -44,8 +43,8 @@ private:
     std::string current_, wanted_, notice_;
 };
 
-// The device in a scene's second hand, the one that was asked for, or else the arrow keys'.
-// `orders` are its hand's. Throws LoadError where it cannot be opened.
+// Opens the device of the second hand: the requested one, else the arrow keys. `orders`: of its
+// hand. Throws LoadError if it cannot be opened.
 WindowDevice open_second(const std::optional<std::string>& asked,
                          const EmulatedOmniSettings& emulated, HandOrders& orders, PadLink& pads);
 

@@ -1,5 +1,6 @@
-// One thread for long work beside the window. It is begun before the window's own thread lowers its
-// priority, and what it begins (servos, simulations) has the usual one.
+// A worker thread for long tasks beside the window. It is created before the window's thread lowers
+// its priority, so that it and the threads that it starts (servos, simulations) have the normal
+// priority.
 #pragma once
 #include <condition_variable>
 #include <functional>
@@ -14,10 +15,10 @@ public:
     Worker();
     Worker(const Worker&) = delete;
     Worker& operator=(const Worker&) = delete;
-    // Waits for what is under way.
+    // Waits for the running task.
     ~Worker();
 
-    // One task at a time: the one before must be done. What it throws is the future's.
+    // Starts a task; the previous one must be done. Its exceptions go into the future.
     std::future<void> start(std::function<void()> task);
 
 private:

@@ -1,4 +1,4 @@
-// Rigid bodies joined by torsions: what remains of molecules when all but some bonds are rigid.
+// Splits molecules into rigid bodies joined by rotatable bonds (torsions).
 #pragma once
 #include "assembly/joints.h"
 
@@ -24,13 +24,13 @@ struct Body {
 
 struct TorsionBodies {
     std::vector<Body> bodies;                           // a parent before its children
-    std::vector<std::uint32_t> body_of;                 // of each atom
-    std::vector<std::array<std::uint32_t, 2>> springs;  // bonds that were cut, atoms
+    std::vector<std::uint32_t> body_of;                 // body of each atom
+    std::vector<std::array<std::uint32_t, 2>> springs;  // atom pairs of bonds that were cut
 
     bool is_base(std::size_t body) const noexcept { return bodies[body].parent == no_body; }
     std::size_t molecules() const noexcept;
     std::size_t joints() const noexcept { return bodies.size() - molecules(); }
-    // With all bases free.
+    // Degrees of freedom if all bases are free.
     std::size_t degrees_of_freedom() const noexcept { return joints() + 6 * molecules(); }
 };
 
@@ -40,7 +40,7 @@ struct TorsionBodies {
 TorsionBodies build_bodies(const Connectivity& connectivity, const Joints& joints,
                            std::span<const std::uint32_t> base_atoms = {});
 
-// Which molecule each body is of. Molecules go in the order of their bases.
+// The molecule of each body. Molecules are in the order of their bases.
 std::vector<std::uint32_t> molecules_of(const TorsionBodies& bodies);
 
 }  // namespace palpa

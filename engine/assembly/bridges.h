@@ -1,4 +1,4 @@
-// The bond graph of a molecule and its bridges: bonds without which it falls in two.
+// Finds the bridges of a molecule's bond graph: bonds without which it falls into two parts.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -10,13 +10,13 @@ namespace palpa {
 
 struct Neighbour {
     std::uint32_t atom;
-    std::uint32_t bond;  // its number among the bonds
+    std::uint32_t bond;  // index of the bond
 };
 
-// Who is bonded to whom, in the order of the bonds.
+// The bonded neighbours of each atom, in the order of the bonds.
 class Neighbours {
 public:
-    // Leaves out the bonds marked in `is_cut`, which is empty or has one entry per bond.
+    // Leaves out the bonds marked in `is_cut` (empty, or one entry per bond).
     Neighbours(std::size_t atoms, std::span<const std::array<std::uint32_t, 2>> bonds,
                std::span<const std::uint8_t> is_cut = {});
 
@@ -30,7 +30,7 @@ private:
     std::vector<Neighbour> entries_;
 };
 
-// One entry per bond, 1 for a bridge; cut bonds are none. (R. Tarjan 1974)
+// One entry per bond: 1 for a bridge, 0 otherwise and for cut bonds. (R. Tarjan 1974)
 std::vector<std::uint8_t> find_bridges(const Neighbours& neighbours, std::size_t bonds);
 
 }  // namespace palpa

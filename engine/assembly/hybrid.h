@@ -20,7 +20,7 @@ struct Cluster {
     double mass;           // amu
     Mat3 inverse_inertia;  // about the centre, 1/(amu Å^2)
     double spread;         // as in BodyState
-    Vec3 joint_point;      // of the joint by which it is attached to its parent, Å
+    Vec3 joint_point;      // point of the joint to its parent, Å
     Vec3 joint_axis;       // length 1
 };
 
@@ -29,11 +29,11 @@ struct HybridTree {
     // whole tree in the same order. The atoms of cluster c stand at [first_atom[c], first_atom[c +
     // 1]) of `atoms`.
     AssemblyTree tree;
-    std::vector<std::uint32_t> cluster_of;  // of each body of the whole tree
-    std::vector<std::uint32_t> body_of;     // of each cluster: the body whose joint or base it has
+    std::vector<std::uint32_t> cluster_of;  // cluster of each body of the whole tree
+    std::vector<std::uint32_t> body_of;     // for each cluster: the body whose joint or base it has
     std::vector<Cluster> clusters;
-    std::vector<Vec3> places;   // of tree.atoms, in the frame of their cluster, Å
-    std::vector<Vec3> centres;  // of each cluster at first, Å
+    std::vector<Vec3> places;   // positions of tree.atoms in the frame of their cluster, Å
+    std::vector<Vec3> centres;  // initial centre of each cluster, Å
 };
 
 struct HybridState {
@@ -42,9 +42,10 @@ struct HybridState {
     AssemblyState passes;
 
     // move_clusters.
-    std::vector<Eigen::Quaterniond> orientations;  // of each cluster's frame in the world
-    std::vector<Vec3> centres;                     // of mass of each cluster, Å
-    std::vector<RigidMotion> motions;              // of each cluster: the last one
+    std::vector<Eigen::Quaterniond>
+        orientations;                  // orientation of each cluster's frame in the world
+    std::vector<Vec3> centres;         // centre of mass of each cluster, Å
+    std::vector<RigidMotion> motions;  // last motion of each cluster
 };
 
 // One entry per body of the whole tree says what is active, as JointSelection has it; those of
@@ -52,7 +53,8 @@ struct HybridState {
 HybridTree build_hybrid_tree(const AssemblyTree& whole, std::span<const std::uint8_t> is_active,
                              std::span<const Vec3> positions);
 
-// Where the tree was built, with the same entries for the bases. One guide per molecule.
+// The state at the positions for which the tree was built, with the same entries for the bases. One
+// guide per molecule.
 HybridState build_hybrid_state(const HybridTree& hybrid, std::span<const std::uint8_t> is_active,
                                std::span<const GuidedBase> guides);
 
@@ -60,7 +62,7 @@ HybridState build_hybrid_state(const HybridTree& hybrid, std::span<const std::ui
 void update_wrenches(const HybridTree& hybrid, std::span<const Vec3> positions,
                      std::span<const Vec3> forces, HybridState& state) noexcept;
 
-// Inertias, points and axes of the clusters where they are now.
+// Updates inertias, points and axes of the clusters for their present positions.
 void update_clusters(const HybridTree& hybrid, HybridState& state) noexcept;
 
 // update_clusters and both passes, with the wrenches that the state holds.
@@ -75,11 +77,11 @@ void move_clusters(const HybridTree& hybrid, std::span<const double> joint_turns
 // Indices of a cluster's atoms.
 std::span<const std::uint32_t> atoms_of(const HybridTree& hybrid, std::size_t cluster) noexcept;
 
-// The places of one cluster's atoms.
+// Updates the positions of one cluster's atoms.
 void update_positions(const HybridTree& hybrid, const HybridState& state, std::uint32_t cluster,
                       std::span<Vec3> positions) noexcept;
 
-// The places of all atoms, from their clusters'.
+// Updates the positions of all atoms.
 void update_positions(const HybridTree& hybrid, const HybridState& state,
                       std::span<Vec3> positions) noexcept;
 

@@ -1,4 +1,4 @@
-// Which bonds of a molecule turn: rules of chemistry, from masses and bonds alone.
+// Decides which bonds of a molecule can turn, by chemical rules that need only masses and bonds.
 #pragma once
 #include "molecule/connectivity.h"
 
@@ -8,11 +8,11 @@
 
 namespace palpa {
 
-// What a bond is to the rules. Only a bridge of the bond graph with further atoms at both ends can
-// turn anything; rings are rigid.
+// The class of a bond for these rules. Only a bridge of the bond graph with further atoms at both
+// ends can turn; rings are rigid.
 enum class JointKind : std::uint8_t {
-    Torsion,   // none of those below: phi, psi, chi with Arg chi5, C(=O)-O of an ester or carbamate
-    Hydroxyl,  // X-OH, of acids too
+    Torsion,   // all others: phi, psi, chi including Arg chi5, C(=O)-O of an ester or carbamate
+    Hydroxyl,  // X-OH, also in acids
     Thiol,     // X-SH
     Ammonium,  // X-NH3, and X-NH2 where X is no planar carbon
     Methyl,    // X-CH3
@@ -24,14 +24,15 @@ enum class JointKind : std::uint8_t {
 
 enum class BondMotion : std::uint8_t { Turn, Rigid, Spring };
 
-// What a scene says of one bond, whatever the rules say. `Turn` asks for a bridge with further
-// atoms at both ends, springs not counted, `Spring` for a bond of a ring, which is opened there.
+// The setting of a scene for one bond, in place of the rules. `Turn` needs a bridge with further
+// atoms at both ends (springs do not count); `Spring` needs a bond of a ring, which is opened
+// there.
 struct JointOverride {
-    std::array<std::uint32_t, 2> bond;  // atoms, either way round
+    std::array<std::uint32_t, 2> bond;  // its two atoms, in either order
     BondMotion motion;
 };
 
-// Which kinds turn. Torsions do, double bonds never do; overrides go before all.
+// Which classes turn. Torsions always do, double bonds never; overrides come first.
 struct JointRules {
     bool hydroxyl = true, thiol = true, ammonium = true;
     bool methyl = false, amide = false, amide_nh2 = false, guanidinium_nh2 = false;
@@ -57,7 +58,7 @@ struct Joints {
 // bond): such a bond needs an override. Throws LoadError naming every override that cannot be met.
 Joints build_joints(const Connectivity& connectivity, const JointRules& rules = {});
 
-// Told by names: phi or psi of a protein.
+// Whether the bond is phi or psi of a protein, by its atom names.
 bool is_backbone(const Connectivity& connectivity,
                  const std::array<std::uint32_t, 2>& bond) noexcept;
 

@@ -1,4 +1,5 @@
-// How much the joints below each node of an assembly tree accelerate, known before any of them is.
+// The acceleration metric: how much the joints below each node of an assembly tree accelerate,
+// known before single accelerations are computed.
 #pragma once
 #include "assembly/passes.h"
 
@@ -8,7 +9,7 @@
 
 namespace palpa {
 
-// What the square of a joint's acceleration counts, and what that of a base.
+// The weight of the squared acceleration of a joint and of a base.
 enum class MetricWeight : std::uint8_t {
     // 1, as in the paper. Of a base angular components count 1 and linear ones 1 / radius of
     // gyration squared (of a molecule, at least 1 Å).
@@ -30,9 +31,9 @@ struct MetricWeights {
 // its handles: sum_ij f_i^T psi_ij f_j + sum_i p_i^T f_i + eta (S. Redon et al., ACM Trans. Graph.
 // 24, 936 (2005)). Laid out as in AssemblyState, for joined parts; of leaves all is 0.
 struct AccelerationMetric {
-    std::vector<Mat6> psi;    // of pairs of handles
-    std::vector<Vec6> p;      // of handles
-    std::vector<double> eta;  // of parts
+    std::vector<Mat6> psi;    // for pairs of handles
+    std::vector<Vec6> p;      // for each handle
+    std::vector<double> eta;  // for each part
     // Of each molecule: the weighted square of its base's acceleration with everything active, of
     // the components that its guide leaves. 0 if none is left.
     std::vector<double> bases;
@@ -48,11 +49,11 @@ AccelerationMetric build_acceleration_metric(const AssemblyTree& tree);
 void update_metric(const AssemblyTree& tree, const AssemblyState& state,
                    const MetricWeights& weights, AccelerationMetric& metric);
 
-// What the square of a joint's acceleration counts; 0 of one that is rigid.
+// The weight of a joint's squared acceleration; 0 for a rigid joint.
 double weight_of_joint(const JointInertia& joint, std::uint32_t link,
                        const MetricWeights& weights) noexcept;
 
-// Of the joints in one part, from the forces on its handles that the state holds.
+// The metric of the joints in one part, from the forces on its handles in the state.
 double find_metric(const AssemblyTree& tree, const AssemblyState& state,
                    const AccelerationMetric& metric, std::uint32_t node) noexcept;
 

@@ -1,4 +1,4 @@
-// The parts of an assembly tree, as the passes over it see them.
+// Access to the parts of an assembly tree for the passes over it.
 #pragma once
 #include "assembly/passes.h"
 
@@ -16,7 +16,7 @@ void update_wrench(const AssemblyTree& tree, std::uint32_t body, std::span<const
                    std::span<const Vec3> forces, BodyState& state) noexcept;
 void update_links(const AssemblyTree& tree, AssemblyState& state) noexcept;
 
-// From the ground's point to the one at which the base is guided.
+// Vector from the ground's point to the point at which the base is guided, Å.
 inline Vec3 arm_of_guide(const AssemblyTree& tree, const AssemblyState& state,
                          std::size_t molecule) noexcept {
     const Vec3& ground = state.points[tree.bases[molecule]];
@@ -48,9 +48,9 @@ private:
     const Vec6* b_ = leaf_b_.data();
 };
 
-// At the point of the ground.
+// Acceleration and force of a base, at the ground's point.
 struct BaseMotion {
-    Vec6 acceleration, force;  // what pushes it, if it is held or guided
+    Vec6 acceleration, force;  // force is 0 unless the base is held or guided
 };
 
 BaseMotion find_base_motion(const AssemblyTree& tree, const AssemblyState& state,
@@ -61,10 +61,10 @@ BaseMotion find_base_motion(const AssemblyTree& tree, const AssemblyState& state
 Vec6 push_for(const AssemblyTree& tree, std::size_t molecule, const Mat6& phi,
               const Vec6& acceleration) noexcept;
 
-// One of the two parts of a joined one. The handle that is joined is its last.
+// One of the two parts of a joined part. The joined handle is its last.
 struct Side {
     const AssemblyNode* node;
-    double sign;  // of the acceleration of the joined handle in u = a_A - a_B
+    double sign;  // sign of the acceleration of the joined handle in u = a_A - a_B
 
     std::uint32_t joined() const noexcept { return node->handles - 1; }
 };

@@ -37,14 +37,14 @@ struct BodyState {
     Vec3 force;            // kcal/mol/Å
 };
 
-// What a guide prescribes of a base.
+// What a guide prescribes for a base.
 enum class BaseGuide : std::uint8_t {
     None,   // nothing
-    Point,  // how a point of the base accelerates; it turns about that as it likes
-    Whole,  // everything; a fixed base is one that is held at rest
+    Point,  // the acceleration of one point; the base turns freely about it
+    Whole,  // the whole motion; a fixed base is held at rest
 };
 
-// That are left to a base.
+// Degrees of freedom that the guide leaves to a base.
 constexpr std::size_t degrees_of_freedom(BaseGuide guide) noexcept {
     return guide == BaseGuide::None ? 6 : guide == BaseGuide::Point ? 3 : 0;
 }
@@ -52,13 +52,13 @@ constexpr std::size_t degrees_of_freedom(BaseGuide guide) noexcept {
 struct GuidedBase {
     BaseGuide guide = BaseGuide::None;
     // Of Point the linear part alone counts. What is not prescribed and may not move either has 0.
-    Vec6 acceleration = Vec6::Zero();  // taken at the point
+    Vec6 acceleration = Vec6::Zero();  // at the point
     // Of Point, Å, moves with the base; none for the molecule's centre of mass, where that of Whole
     // always is.
     std::optional<Vec3> point;
 };
 
-// What is out of date of a part: nothing, what follows from forces, or all.
+// What is out of date in a part: nothing, what depends on forces, or everything.
 enum class Change : std::uint8_t { None, Forces, Places };
 
 // Quantities of joined parts: those of handles stand at AssemblyNode::first_handle, those of pairs
@@ -70,17 +70,18 @@ struct AssemblyState {
     // The caller writes what may move. One entry per body: its joint, or for a base the degrees of
     // freedom that its guide leaves. What is not active stays rigid. All are active at first.
     std::vector<std::uint8_t> is_active;
-    // And what guides the bases; nothing at first.
-    std::vector<GuidedBase> guides;  // of each molecule
+    // Written by the caller: the guides of the bases; none at first.
+    std::vector<GuidedBase> guides;  // one per molecule
 
     // update_bodies. A joint's point is the atom at the end of its axis, the ground's the centre of
     // mass of its molecule, a seam's the centre of its body.
     std::vector<BodyState> bodies;
-    std::vector<double> molecule_mass;    // amu
-    std::vector<double> gyration;         // radius of gyration of each molecule, Å
-    std::vector<Vec3> points;             // of each link, Å
-    std::vector<Vec3> axes;               // of each joint, length 1
-    std::vector<Vec3> positions, forces;  // of the atoms, of which all that is
+    std::vector<double> molecule_mass;  // amu
+    std::vector<double> gyration;       // radius of gyration of each molecule, Å
+    std::vector<Vec3> points;           // point of each link, Å
+    std::vector<Vec3> axes;             // axis of each joint, unit vector
+    std::vector<Vec3> positions,
+        forces;  // positions and forces of the atoms for which all this was computed
     // Of each node; the passes over all of them renew no more than that. All places at first.
     std::vector<Change> changes;
 
@@ -90,9 +91,9 @@ struct AssemblyState {
     std::vector<JointInertia> joints;  // of each joined part
 
     // downward_pass.
-    std::vector<Vec6> f;                     // on handles, from outside the part
+    std::vector<Vec6> f;                     // force on each handle from outside of its part
     std::vector<double> joint_acceleration;  // of each body's joint, rad/time^2; 0 for bases
-    std::vector<Vec6> base_acceleration;     // of each molecule, at the point of its ground link
+    std::vector<Vec6> base_acceleration;     // for each molecule, at the point of its ground link
     // Of each molecule: what holds or guides its base, at the same point; 0 if free.
     std::vector<Vec6> base_force;
 };
@@ -101,10 +102,11 @@ constexpr std::uint32_t pair_number(std::uint32_t i, std::uint32_t j) noexcept {
     return j * (j + 1) / 2 + i;
 }
 
-// Of the right sizes, with everything active.
+// A state with the right sizes and everything active.
 AssemblyState build_assembly_state(const AssemblyTree& tree);
 
-// What the bodies weigh, and where the links are. One position and one force (kcal/mol/Å) per atom.
+// Updates mass properties of the bodies, and points and axes of the links. One position (Å) and one
+// force (kcal/mol/Å) per atom.
 void update_bodies(const AssemblyTree& tree, std::span<const Vec3> positions,
                    std::span<const Vec3> forces, AssemblyState& state) noexcept;
 
@@ -127,7 +129,7 @@ void separate(const AssemblyTree& tree, std::size_t node, AssemblyState& state) 
 // From the roots to the leaves: forces on handles, and with them the accelerations.
 void downward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept;
 
-// The three, one after the other.
+// update_bodies, upward_pass and downward_pass.
 void update_accelerations(const AssemblyTree& tree, std::span<const Vec3> positions,
                           std::span<const Vec3> forces, AssemblyState& state) noexcept;
 

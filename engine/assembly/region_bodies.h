@@ -1,4 +1,4 @@
-// Bodies where only a region of molecules moves and everything outside of it is fixed.
+// Builds bodies for molecules of which only a region moves; everything outside is fixed.
 #pragma once
 #include "assembly/bodies.h"
 
@@ -19,7 +19,7 @@ std::vector<std::array<std::uint32_t, 2>> find_region_cuts(
 
 struct CutBodies {
     TorsionBodies bodies;
-    std::vector<std::uint32_t> molecules;  // which of the whole each one is, rising
+    std::vector<std::uint32_t> molecules;  // index of each molecule in the whole, ascending
 };
 
 // Those atoms of bodies, rising, by their new numbers. Bodies without any are left out: only bases

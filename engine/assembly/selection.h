@@ -1,4 +1,4 @@
-// Which joints wake: those that would move most, as a connected region from the roots of the tree.
+// Selects the active joints: those that would accelerate most.
 #pragma once
 #include "assembly/metric.h"
 
@@ -10,46 +10,47 @@
 namespace palpa {
 
 enum class SelectionShape : std::uint8_t {
-    // As in the paper: whatever is opened is active, a connected region from the roots of the tree.
-    // To wake a joint far down wakes all that part it from the roots, which cut molecules in
+    // As in the paper: opened parts are active, a connected region from the roots of the tree. To
+    // activate a joint deep in the tree, all joints above it are activated, which cut molecules in
     // halves.
     Region,
-    // Those alone that count most by themselves. Parts are opened to find them, and stay rigid
-    // else.
+    // Only the single joints with the largest weight. Parts are opened to find them, but stay rigid
+    // otherwise.
     Single,
 };
 
-// Where to stop: when that many degrees of freedom are chosen, or when the rest is no more than
-// that. A joint is one; a base is those that its guide leaves, six if free, all or none of them.
+// When to stop: at this number of degrees of freedom, or when the neglected metric is at most this.
+// A joint counts 1; a base counts what its guide leaves (6 if free), all or none.
 struct SelectionLimits {
     SelectionShape shape = SelectionShape::Region;
     std::size_t degrees_of_freedom = std::numeric_limits<std::size_t>::max();
-    double neglected = 0;  // of the metric's sum of squares
+    double neglected = 0;  // largest neglected sum of squares
     // By which what was chosen the last time counts more, 1 or more, so that joints do not come and
     // go. With 2.25 accelerations may go up and down by 20 %, (1.2 / 0.8)^2, and nothing changes.
     double advantage = 2.25;
 };
 
-// What a step costs as it was measured, in microseconds: fixed + each * degrees of freedom.
+// The measured time of a step, µs: fixed + each * degrees of freedom.
 struct StepCost {
     double fixed_us = 0;
     double each_us = 0;  // above 0
 };
 
-// As many as can be active in a step of that length; none where it is too short for any.
+// The number that can be active in a step of this length; 0 if it is too short for any.
 std::size_t degrees_of_freedom_within(double time_us, const StepCost& cost) noexcept;
 
 struct JointSelection {
     // One entry per body as AssemblyState::is_active. Bases with nothing left to choose as the
     // state has them.
     std::vector<std::uint8_t> is_active;
-    std::size_t degrees_of_freedom = 0;  // chosen
-    double total = 0;                    // the metric of everything, were everything active
-    double neglected = 0;                // the metric of what is not chosen
+    std::size_t degrees_of_freedom = 0;  // selected
+    double total = 0;                    // metric with everything active
+    double neglected = 0;                // metric of what is not selected
 
-    std::vector<std::uint8_t> is_open;  // of each node; those of the last time have the advantage
+    std::vector<std::uint8_t>
+        is_open;  // opened nodes; those of the last selection have the advantage
 
-    // What may be chosen next, a heap by priority: a part to be opened, or a base.
+    // A candidate, in a heap by priority: a part to open, or a base.
     struct Choice {
         double priority, metric;
         std::uint32_t node;  // no_node for a base
@@ -59,7 +60,7 @@ struct JointSelection {
 
     // A joint or a base that may be active by itself.
     struct Single {
-        double priority, metric;  // for a degree of freedom, of all
+        double priority, metric;  // per degree of freedom; in all
         std::uint32_t body;
         std::uint32_t freedom;
     };

@@ -1,4 +1,4 @@
-// The assembly tree: in which order rigid bodies are joined to molecules, two parts at a time.
+// The assembly tree: the order in which rigid bodies are joined to molecules, two parts at a time.
 #pragma once
 #include "assembly/bodies.h"
 #include "math/vec.h"
@@ -27,12 +27,12 @@ inline constexpr std::uint32_t no_node = std::numeric_limits<std::uint32_t>::max
 struct AssemblyNode {
     // Of a joined part; the child side of the link is B. no_node for a body.
     std::uint32_t a = no_node, b = no_node;
-    std::uint32_t link = no_node;  // that joins A and B
-    std::uint32_t body = no_body;  // of a leaf
+    std::uint32_t link = no_node;  // link that joins A and B
+    std::uint32_t body = no_body;  // body of a leaf
     std::uint32_t parent = no_node;
 
     std::uint32_t handles = 0;
-    std::array<std::uint32_t, 3> links{};  // of each handle
+    std::array<std::uint32_t, 3> links{};  // link of each handle
     // Of a joined part: each handle's side, 0 for A and 1 for B, and its number there.
     std::array<std::uint8_t, 3> side{}, number{};
 
@@ -50,12 +50,13 @@ struct AtomShare {
 
 struct AssemblyTree {
     TorsionBodies bodies;
-    std::vector<std::uint32_t> molecule_of;  // of each body
-    std::vector<std::uint32_t> bases;        // of each molecule, bodies
+    std::vector<std::uint32_t> molecule_of;  // molecule of each body
+    std::vector<std::uint32_t> bases;        // base body of each molecule
 
-    std::vector<AssemblyNode> nodes;   // children before their parents
-    std::vector<std::uint32_t> roots;  // of each molecule; its one handle leads to the ground
-    std::uint32_t links = 0;           // in all
+    std::vector<AssemblyNode> nodes;  // children before their parents
+    std::vector<std::uint32_t>
+        roots;                // root node of each molecule; its single handle leads to the ground
+    std::uint32_t links = 0;  // total number of links
     // Of joined parts: how many there are, and how many handles and pairs of them they have.
     std::uint32_t parts = 0, handles = 0, pairs = 0;
 
@@ -65,12 +66,12 @@ struct AssemblyTree {
     // be inverted.
     std::vector<std::uint32_t> first_share;
     std::vector<AtomShare> shares;
-    std::vector<std::uint32_t> first_atom;  // the same for the atoms themselves
+    std::vector<std::uint32_t> first_atom;  // the same for the body's own atoms
     std::vector<std::uint32_t> atoms;
 
-    std::vector<double> copies;           // of each body
-    std::vector<std::uint8_t> is_linear;  // of each body: all atoms in line
-    std::size_t depth = 0;                // joins from a root down to a body, at most
+    std::vector<double> copies;           // for each body
+    std::vector<std::uint8_t> is_linear;  // for each body: whether all its atoms are collinear
+    std::size_t depth = 0;                // largest number of joins between a root and a body
 };
 
 // Positions tell which bodies have all atoms in line (Å; only angles of bonds matter, which stay).

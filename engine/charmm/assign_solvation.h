@@ -1,4 +1,4 @@
-// Gives atoms EEF1's numbers by their types.
+// Assigns EEF1's solvation parameters to atoms by their types.
 #pragma once
 #include "charmm/force_field.h"
 #include "charmm/solvation.h"
@@ -29,7 +29,7 @@ Solvation assign_solvation(const Connectivity& connectivity, const ForceField& f
                            const SolvationTable& table,
                            std::span<const std::uint8_t> is_structural = {});
 
-// One entry per atom: which are of water, residues of one oxygen and two hydrogens.
+// Marks the atoms of waters: residues with one oxygen and two hydrogens. One entry per atom.
 std::vector<std::uint8_t> find_water_atoms(std::span<const AtomName> names,
                                            std::span<const double> mass);
 

@@ -1,4 +1,4 @@
-// From what is bonded to what it costs: gives every term of a structure its numbers.
+// Assigns force field parameters to every term of a structure.
 #pragma once
 #include "charmm/force_field.h"
 #include "charmm/topology.h"

@@ -1,4 +1,4 @@
-// CHARMM36 as it comes with the program: a packed force field beside it.
+// The built-in force field: CHARMM36 as a packed file beside the program.
 #pragma once
 #include "charmm/force_field.h"
 
@@ -9,11 +9,11 @@
 
 namespace palpa {
 
-// Where it is: installed beside the program, or in the source tree of a build. Throws LoadError
-// where there is none.
+// Path of the file: installed beside the program, or in the source tree of a build. Throws
+// LoadError if it is missing.
 std::filesystem::path find_built_in_force_field();
 
-// It, and in place of what it has or beside it what `files` say.
+// Reads it, then `files`, which add to it or replace entries of it.
 ForceField read_built_in_force_field(std::span<const std::filesystem::path> files = {});
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// The charge groups of a structure, as templates and patches make them.
+// Finds the charge groups of a structure from templates and patches.
 #pragma once
 #include "charmm/force_field.h"
 #include "charmm/generate.h"
@@ -19,7 +19,7 @@ std::vector<std::vector<std::uint32_t>> find_charge_groups(const ForceField& for
                                                            const Structure& structure,
                                                            const GenerateSettings& settings);
 
-// Those that are not neutral to 0.001 e, as "A ASP 25, CB HB1 HB2 CG OD1 OD2: -1.00 e".
+// Groups with a charge above 0.001 e, as "A ASP 25, CB HB1 HB2 CG OD1 OD2: -1.00 e".
 std::vector<std::string> find_charged_groups(const Connectivity& connectivity,
                                              const std::vector<std::vector<std::uint32_t>>& groups);
 

@@ -1,4 +1,5 @@
-// What a structure lacks of what its templates and patches name, and how templates say where it is.
+// Adds the atoms that templates and patches require, and finds the internal coordinates from which
+// they can be placed.
 #pragma once
 #include "charmm/force_field.h"
 #include "charmm/generate.h"
@@ -11,12 +12,12 @@
 
 namespace palpa {
 
-// A structure with every atom that `build_connectivity` asks for.
+// A structure with all atoms that `build_connectivity` requires.
 struct CompletedStructure {
     // The given atoms in their order; behind the last given atom of a residue those that it lacked,
     // in the order of its template and its patches, with positions of NaN.
     Structure structure;
-    std::vector<std::uint32_t> added;  // the atoms without a position, rising
+    std::vector<std::uint32_t> added;  // atoms without a position, ascending
 };
 
 // Adds what is missing; refuses, as `build_connectivity` does, whatever else is wrong with
@@ -28,7 +29,7 @@ CompletedStructure add_missing_atoms(const ForceField& force_field, const Struct
 // A line of an IC table (InternalCoordinate in charmm/force_field.h) whose four atoms are found.
 struct AtomCoordinate {
     std::array<std::uint32_t, 4> atoms;
-    bool is_improper = false;  // the third atom is bonded to the other three
+    bool is_improper = false;  // improper: the third atom is bonded to the other three
     double first_bond = 0;     // Å, 0-1; 0-2 of an improper; 0: the file leaves it open
     double first_angle = 0;    // rad, 0-1-2; 0-2-1 of an improper
     double dihedral = 0;       // rad, 0-1-2-3

@@ -1,4 +1,4 @@
-// A ball of whole residues cut out of a larger system: systems of any size and of one kind.
+// Cuts a sphere of whole residues out of a larger system, to make similar systems of any size.
 #pragma once
 #include "charmm/topology.h"
 #include "math/vec.h"
@@ -12,7 +12,7 @@
 namespace palpa {
 
 struct CutSystem {
-    std::vector<std::uint32_t> atoms;  // which atom of the whole each one is, rising
+    std::vector<std::uint32_t> atoms;  // index of each atom in the whole, ascending
     Connectivity connectivity;
     Topology topology;
     std::vector<Vec3> positions;  // Å
@@ -30,7 +30,7 @@ std::vector<std::uint32_t> find_sphere(const Connectivity& connectivity,
 // Tables of types and maps stay whole, and solvation goes along.
 Topology cut_topology(const Topology& whole, std::span<const std::uint32_t> atoms);
 
-// A ball of the whole; pieces of chain are molecules of their own.
+// Cuts a sphere; separate pieces of chain become molecules of their own.
 CutSystem cut_sphere(const Connectivity& connectivity, const Topology& topology,
                      std::span<const Vec3> positions, std::uint32_t centre, std::size_t most_atoms);
 

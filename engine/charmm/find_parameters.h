@@ -1,4 +1,4 @@
-// Which entry of a force field gives some types their numbers.
+// Finds the entry of a force field for given atom types.
 #pragma once
 #include "charmm/force_field.h"
 
@@ -11,15 +11,15 @@ namespace palpa {
 template <std::size_t Size>
 using Types = std::array<std::string, Size>;
 
-// Null where there is none; the rules are those of charmm/build_topology.h. What is found stays
-// where it is in the force field.
+// Null if there is none; the rules are in charmm/build_topology.h. The results point into the force
+// field.
 const HarmonicParameter* find_bond(const ForceField& force_field, const Types<2>& types);
 const AngleParameter* find_angle(const ForceField& force_field, const Types<3>& types);
 const std::vector<DihedralTerm>* find_improper(const ForceField& force_field,
                                                const Types<4>& types);
 const CmapParameter* find_cmap(const ForceField& force_field, const Types<8>& types);
 
-// Over an angle of 180 degrees, where no entry is needed, one without terms.
+// Across an angle of 180 degrees no entry is needed: then the result has no terms.
 const std::vector<DihedralTerm>* find_dihedral(const ForceField& force_field,
                                                const Types<4>& types);
 

@@ -17,23 +17,23 @@
 namespace palpa {
 
 struct AtomType {
-    std::int64_t number = -1;  // by which old topologies call it; -1: none
+    std::int64_t number = -1;  // number in old topology files; -1: none
     double mass = 0;           // amu
-    std::string element;       // "O"; empty where the file names none, "X": no atom at all
+    std::string element;       // "O"; empty if the file has none, "X": not an atom
     TextPlace place;
 };
 
 struct ResidueAtom {
     std::string name, type;
     double charge = 0;  // e
-    int group = 0;      // which GROUP of the residue it stands in, from 0
+    int group = 0;      // index of its GROUP in the residue, from 0
     TextPlace place;
 };
 
 // A line of an IC table: the chain A-B-C-D, or, as an improper, C in the middle of A, B and D.
 // 0 where the file leaves a value open.
 struct InternalCoordinate {
-    std::array<std::string, 4> atoms;  // the third without its star
+    std::array<std::string, 4> atoms;  // the third name without its star
     bool is_improper = false;          // the third had a star
     double first_bond = 0;             // Å, A-B; A-C of an improper
     double first_angle_deg = 0;        // A-B-C; A-C-B of an improper
@@ -47,9 +47,9 @@ struct InternalCoordinate {
 // the residue that it is given in that place ("2SG").
 struct Residue {
     double charge = 0;               // e, as the RESI or PRES line states it
-    std::vector<ResidueAtom> atoms;  // of a patch: new ones, and new numbers for those there
+    std::vector<ResidueAtom> atoms;  // for a patch: new atoms, and new parameters of existing ones
     std::vector<std::array<std::string, 2>> bonds;
-    std::vector<std::array<std::string, 3>> angles;     // given beside those generated
+    std::vector<std::array<std::string, 3>> angles;     // in addition to generated ones
     std::vector<std::array<std::string, 4>> dihedrals;  // likewise
     std::vector<std::array<std::string, 4>> impropers;
     std::vector<std::array<std::string, 8>> cmaps;  // two dihedrals each
@@ -61,10 +61,10 @@ struct Residue {
     std::vector<std::array<std::string, 4>> deleted_dihedrals;  // likewise
     std::vector<std::array<std::string, 4>> deleted_impropers;
     std::vector<std::array<std::string, 8>> deleted_cmaps;
-    std::string first_patch, last_patch;  // at the ends of a chain; "NONE": none
+    std::string first_patch, last_patch;  // patches at chain ends; "NONE": none
     bool has_generated_angles = true;     // false: NOANG
     bool has_generated_dihedrals = true;  // false: NODIH
-    std::size_t lone_pair_line = 0;       // of its first lone pair; 0: it has none
+    std::size_t lone_pair_line = 0;       // line of its first lone pair; 0: none
     // Every atom that bonds and other terms name, and the line where they first do.
     std::map<std::string, std::size_t, std::less<>> named_on;
     TextPlace place;
@@ -74,7 +74,7 @@ struct Residue {
 struct NonbondedType {
     double epsilon = 0;      // kcal/mol, >= 0
     double half_rmin = 0;    // Å
-    double epsilon14 = 0;    // of atoms three bonds apart; the plain ones where none are given
+    double epsilon14 = 0;    // for 1-4 pairs; as for other pairs if not given
     double half_rmin14 = 0;  // likewise
     TextPlace place;
 };
@@ -111,18 +111,18 @@ struct CmapParameter {
 struct NbfixPair {
     double epsilon = 0;    // kcal/mol, >= 0
     double rmin = 0;       // Å
-    double epsilon14 = 0;  // of atoms three bonds apart; the plain ones where none are given
+    double epsilon14 = 0;  // for 1-4 pairs; as for other pairs if not given
     double rmin14 = 0;     // likewise
     TextPlace place;
 };
 
-// What was read and a person should know of.
+// A note on the input that the user should know.
 struct ForceFieldNote {
     enum class Kind : std::uint8_t {
-        Replaced,   // `earlier` is where the name stood before, with other values
-        Negative,   // a force constant
-        ExtraWord,  // behind what a line says, as if a '!' were missing
-        OtherFile   // that a stream file names
+        Replaced,   // defined again; `earlier` is the previous place, with other values
+        Negative,   // a negative force constant
+        ExtraWord,  // extra words on a line, as if a '!' were missing
+        OtherFile   // another file that a stream file names
     };
     Kind kind{};
     TextPlace place;
@@ -130,7 +130,7 @@ struct ForceFieldNote {
     TextPlace earlier;
 };
 
-// Of the two ways to read types, the lower in the alphabet.
+// Sorts two types alphabetically.
 std::pair<std::string, std::string> in_order(std::string a, std::string b);
 std::array<std::string, 3> in_order(std::array<std::string, 3> types);
 std::array<std::string, 4> in_order(std::array<std::string, 4> types);
@@ -138,7 +138,7 @@ std::array<std::string, 4> in_order(std::array<std::string, 4> types);
 // Names are upper case, as CHARMM reads them. Types of parameters stand `in_order`, but for CMAP,
 // where the file's order counts.
 struct ForceField {
-    std::vector<std::string> files;  // in the order in which they were read
+    std::vector<std::string> files;  // in reading order
     std::map<std::string, AtomType, std::less<>> types;
     std::map<std::string, Residue, std::less<>> residues;
     std::map<std::string, Residue, std::less<>> patches;
@@ -155,8 +155,8 @@ struct ForceField {
     std::map<std::array<std::string, 8>, CmapParameter> cmaps;
     std::map<std::pair<std::string, std::string>, NbfixPair> nbfix;
 
-    std::vector<ForceFieldNote> notes;  // in the order of reading
-    // Of a packed force field: what it is, its date, where it is from, and what to cite; lines.
+    std::vector<ForceFieldNote> notes;  // in reading order
+    // For a packed force field: title, date, origin and what to cite, as lines.
     std::vector<std::string> about;
 };
 
@@ -181,11 +181,10 @@ struct ForceField {
 // (packed_force_field.h).
 ForceField read_force_field(std::span<const std::filesystem::path> files);
 
-// A line for each kind of note with its number and the first few of them; no line where there are
-// none.
+// One line for each kind of note, with its number and the first few; empty without notes.
 std::vector<std::string> describe_notes(std::span<const ForceFieldNote> notes);
 
-// All of one note: "a.str:7: bond CT1 NH1 replaces that of b.prm:3".
+// One note as text: "a.str:7: bond CT1 NH1 replaces that of b.prm:3".
 std::string describe_note(const ForceFieldNote& note);
 
 // The force field files of a folder in the order in which they are read: .rtf before .prm before

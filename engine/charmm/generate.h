@@ -1,4 +1,5 @@
-// From the atoms of a structure to what is bonded: residues, patches, and the terms that they make.
+// Builds the connectivity of a structure from residues and patches, as CHARMM's GENERATE and PATCH
+// do.
 #pragma once
 #include "charmm/force_field.h"
 #include "molecule/atoms.h"
@@ -15,7 +16,7 @@ struct ResidueId {
     std::string number;  // with its insertion code
 };
 
-// How one segment is generated.
+// Settings for generating one segment.
 struct SegmentSettings {
     std::string segment;
     std::string first, last;          // patches at its ends. "NONE": none; empty: what the
@@ -30,7 +31,8 @@ struct PatchUse {
 };
 
 struct GenerateSettings {
-    std::vector<SegmentSettings> segments;  // those that do not go by their residues' templates
+    std::vector<SegmentSettings>
+        segments;  // only segments that differ from the defaults of their residues
     std::vector<PatchUse> patches;
     // Two CYS without HG1 whose SG are closer than this are bonded (patch DISU), unless a patch
     // above has one of them. A bond is 2.05 Å long. 0: never.

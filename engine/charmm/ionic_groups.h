@@ -16,16 +16,16 @@ namespace palpa {
 struct IonicGroup {
     std::string_view kind;             // "ARG", "NTER"
     std::vector<std::uint32_t> atoms;  // rising
-    double charge = 0;                 // e, the sum of its atoms
-    double full_charge = 0;            // e, what that is in vacuum: 1 or -1
+    double charge = 0;                 // e, sum over its atoms
+    double full_charge = 0;            // charge in vacuum: 1 or -1 e
     bool has_neutral_charges = false;  // every atom has EEF1-SB's charge, to 0.01 e
 
     bool is_neutral() const noexcept;  // the sum is 0, to 0.01 e
     bool is_full() const noexcept;
 };
 
-// In the order of the residues; one entry per atom in each array. Atoms of a residue stand
-// together.
+// Finds the ionic groups in the order of the residues; arrays have one entry per atom. Atoms of a
+// residue must stand together.
 std::vector<IonicGroup> find_ionic_groups(std::span<const AtomName> names,
                                           std::span<const std::string_view> types,
                                           std::span<const double> charge);
@@ -37,7 +37,7 @@ std::vector<IonicGroup> find_ionic_groups(std::span<const AtomName> names,
 // own. The NBFIX of NC2 and OC is gone. All else stays, the backbone too.
 ForceField neutralise_ionic_groups(ForceField force_field);
 
-// The model and the origin of the numbers, for the titles of files, in lines.
+// Model and source of the charges, for titles of files, as lines.
 inline constexpr std::string_view neutral_charges_origin =
     "Charges: EEF1-SB, every ionic group neutral; S. Bottaro, K. Lindorff-\n"
     "Larsen, R. B. Best, J. Chem. Theory Comput. 9, 5641 (2013). PROP: EEF1.1.";
@@ -46,9 +46,9 @@ inline constexpr std::string_view neutral_charges_origin =
 // are without, as CHARMM36 and CHARMM36m are.
 double find_backbone_term(const ForceField& force_field);
 
-// What stands in the way of a solvent model that has neutral ionic groups, as sentences without a
-// full stop: groups that are not neutral, residues that are not (0.001 e), the whole. Of many alike
-// the first ones are named.
+// The reasons why a solvent model with neutral ionic groups cannot be used, as sentences without a
+// full stop: groups that are not neutral, residues that are not neutral (0.001 e), the total
+// charge. Of many similar ones the first are named.
 std::vector<std::string> find_charged(std::span<const AtomName> names,
                                       std::span<const std::string_view> types,
                                       std::span<const double> charge);

@@ -1,4 +1,4 @@
-// Everything that an input lacks, gathered before it is reported.
+// Gathers all problems of an input, to report them together.
 #pragma once
 #include "charmm/force_field.h"
 #include "core/load_error.h"
@@ -11,13 +11,13 @@
 
 namespace palpa {
 
-// In the order in which it was found, each thing once; thrown as one LoadError. Its message names
-// the first ones, and `LoadError::further` the others.
+// The problems in the order in which they were found, each once; thrown as one LoadError
+// (join_problems in core/load_error.h).
 class Missing {
 public:
     void add(const TextPlace& place, std::string what);
-    void advise(std::string what);     // what stands once at the end of the message
-    void add(const LoadError& error);  // another stage's problems, behind ours
+    void advise(std::string what);     // advice at the end of the message, each once
+    void add(const LoadError& error);  // appends the problems of another stage
     bool empty() const noexcept { return problems_.empty(); }
     std::size_t size() const noexcept { return problems_.size(); }
     void throw_if_any() const;
@@ -29,7 +29,7 @@ private:
     std::set<std::string> seen_;
 };
 
-// What helps where a structure is as it was downloaded.
+// Advice for structures as downloaded.
 inline constexpr const char* rename_advice = "`palpa prepare` gives atoms CHARMM's names";
 inline constexpr const char* add_advice = "`palpa prepare` adds atoms";
 
@@ -41,17 +41,17 @@ std::vector<std::string_view> keys(const Map& map) {
     return names;
 }
 
-// The residue of this name, or null with the reason noted: it is unknown, or has lone pairs. Noted
-// as well if its atoms do not add up to its charge. `place`: of what asks for it.
+// The residue of this name; null if it is unknown or has lone pairs, which is noted in `missing`.
+// Also noted: charges that do not add up to the declared one. `place`: where the name is used.
 const Residue* find_residue(const ForceField& force_field, const std::string& name,
                             const TextPlace& place, Missing& missing);
 
-// The same of an atom's type, by its name or its number.
+// The same for an atom type, by its name or number.
 const std::pair<const std::string, AtomType>* find_type(const ForceField& force_field,
                                                         const std::string& name,
                                                         const TextPlace& place, Missing& missing);
 
-// And its Lennard-Jones parameters, by the type's name.
+// The Lennard-Jones parameters of a type, by its name.
 const NonbondedType* find_nonbonded(const ForceField& force_field, const std::string& type,
                                     const TextPlace& place, Missing& missing);
 

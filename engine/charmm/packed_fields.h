@@ -19,7 +19,7 @@ namespace palpa {
 inline constexpr std::array packed_powers = {1e0, 1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,
                                              1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17};
 
-// What a number may be beside finite.
+// Allowed range of a number, which must be finite.
 enum class PackedNumber { Any, NotNegative };
 
 // Whose name it is: those of a residue's atoms stand once, and those in terms are remembered.

@@ -21,7 +21,7 @@ public:
     // Whether a keyword begins a section.
     static bool is_section(std::string_view keyword) { return find_section(keyword).has_value(); }
 
-    // Takes the present statement into the force field.
+    // Reads the present statement into the force field.
     void read();
 
     // Whether a section has begun and not ended.
@@ -45,14 +45,14 @@ private:
     };
     static std::optional<Section> find_section(std::string_view keyword);
 
-    // A CMAP map whose numbers are being read.
+    // A CMAP that is being read.
     struct OpenMap {
         std::array<std::string, 8> types;
-        std::size_t count = 0;  // of numbers, once it is whole
+        std::size_t count = 0;  // number of values of the complete map
         CmapParameter parameter;
     };
 
-    // Terms of earlier parts, and what this part has in their place.
+    // Terms of earlier parts and their replacement by this part.
     struct ReplacedDihedral {
         const std::vector<DihedralTerm>* now;
         std::vector<DihedralTerm> terms;
@@ -69,19 +69,20 @@ private:
     void note_replaced_dihedrals();
     void read_cmap();
     void read_cmap_energies(OpenMap& map) const;
-    bool is_inside_map() const;  // numbers of it are still to come
+    bool is_inside_map() const;  // whether the open map is incomplete
     void end_cmap();
     void read_nonbonded();
     void read_nbfix();
     void check_nonbonded_options() const;
-    // The depth of a well and the distance of its minimum, from word `at` on.
+    // Reads well depth (kcal/mol) and distance of the minimum (Å) from word `at` on.
     std::array<double, 2> read_well(std::size_t at, const char* distance) const;
 
     const Statements& statements_;
     ForceField& into_;
     Section section_ = Section::None;
-    std::optional<OpenMap> open_map_;  // the one that is not yet in the force field, if any
-    std::set<const std::vector<DihedralTerm>*> of_this_part_;  // those that it gave first terms
+    std::optional<OpenMap> open_map_;  // the open map, if any
+    std::set<const std::vector<DihedralTerm>*>
+        of_this_part_;  // dihedrals to which this part gave their first terms
     std::vector<ReplacedDihedral> replaced_;
 };
 

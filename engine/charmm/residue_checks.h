@@ -1,4 +1,4 @@
-// Whether the atoms of a structure are those that its residues should have.
+// Checks that the atoms of a structure are those of its residues' templates.
 #pragma once
 #include "charmm/force_field.h"
 #include "charmm/missing.h"
@@ -7,9 +7,8 @@
 
 namespace palpa {
 
-// Notes what is wrong with the atoms of settled residues: some that no template knows, some that
-// are lacking (unless they may), types that there are not, templates that name what there is not,
-// bonds longer than `longest_bond`.
+// Notes problems of settled residues: unknown atoms, missing atoms (unless they are allowed),
+// unknown types, templates that name missing atoms, and bonds longer than `longest_bond`.
 void check_residues(const ForceField& force_field, const Structure& structure,
                     const ResidueInstances& residues, bool may_lack, Missing& missing);
 

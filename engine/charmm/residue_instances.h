@@ -1,5 +1,5 @@
-// The residues of a structure with what templates and patches make of them, for whatever is found
-// by the names that residues use.
+// The residues of a structure with their templates and patches applied, to find atoms by the names
+// that templates use.
 #pragma once
 #include "charmm/force_field.h"
 #include "charmm/generate.h"
@@ -24,35 +24,36 @@ struct ResidueInstance {
 
     AtomName name;  // `atom` unused
     TextPlace place;
-    const Residue* residue = nullptr;                               // null: unknown, and noted
-    std::size_t previous = none, next = none;                       // in its chain
-    std::map<std::string, std::uint32_t, std::less<>> present;      // atoms of the structure
-    std::map<std::string, const ResidueAtom*, std::less<>> wanted;  // atoms it should have
-    std::set<std::string, std::less<>> deleted;                     // by patches
+    const Residue* residue = nullptr;                           // null: unknown, which was noted
+    std::size_t previous = none, next = none;                   // neighbours in the chain
+    std::map<std::string, std::uint32_t, std::less<>> present;  // atoms in the structure
+    std::map<std::string, const ResidueAtom*, std::less<>>
+        wanted;                                  // atoms of the template and patches
+    std::set<std::string, std::less<>> deleted;  // atoms that patches delete
     std::vector<std::string> patches;
     bool has_generated_terms = true;
-    bool is_settled = true;  // false: what it should have is not known for sure, for a noted reason
+    bool is_settled = true;  // false: the wanted atoms are uncertain, for a noted reason
 
     std::string label() const;  // "PROA CYS 3 with DISU"
 };
 
-// A template and the residues that it is used on: one, or those that a patch is given.
+// A template or patch and the residues to which it applies.
 struct TemplateUse {
     const Residue* residue;
     std::vector<std::size_t> instances;
-    std::string patch;  // its name; empty: a residue's own template
+    std::string patch;  // name of the patch; empty: a residue's own template
 };
 
 struct ResidueInstances {
     std::vector<ResidueInstance> instances;  // in the order of their first atoms
-    std::vector<TemplateUse> uses;           // residues in that order, then patches
+    std::vector<TemplateUse> uses;           // residues in this order, then patches
 };
 
 // By the rules of charmm/generate.h; what is wrong with residues and patches is noted.
 ResidueInstances build_residue_instances(const ForceField& force_field, const Structure& structure,
                                          const GenerateSettings& settings, Missing& missing);
 
-// An atom as a template names it: whose it is, and its own name.
+// An atom name of a template: its residue and its name there.
 struct AtomReference {
     std::size_t residue = ResidueInstance::none;
     std::string_view atom;

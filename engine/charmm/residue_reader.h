@@ -14,10 +14,10 @@ public:
     ResidueReader(const Statements& statements, ForceField& into)
         : statements_(statements), into_(into) {}
 
-    // Takes the present statement into the force field.
+    // Reads the present statement into the force field.
     void read();
 
-    // The residue or patch that has begun and not ended, or null.
+    // The open residue or patch, or null.
     const Residue* open_residue() const noexcept { return residue_; }
 
     // Ends the residue and forgets the defaults of chain ends.
@@ -36,16 +36,17 @@ private:
 
     const Statements& statements_;
     ForceField& into_;
-    Residue* residue_ = nullptr;                              // that lines belong to, if any
-    int group_ = 0;                                           // that its next atom stands in
-    std::map<std::string, std::size_t> at_line_;              // its atoms, by name
-    std::string first_patch_ = "NONE", last_patch_ = "NONE";  // of residues that say nothing
+    Residue* residue_ = nullptr;                  // the open residue, if any
+    int group_ = 0;                               // GROUP of the next atom
+    std::map<std::string, std::size_t> at_line_;  // lines of its atoms, by name
+    std::string first_patch_ = "NONE",
+                last_patch_ = "NONE";  // defaults for residues without their own
 };
 
 // MASS number type mass [element]; the number is -1, or what old structure files call the type.
 void read_mass(const Statements& statements, ForceField& into);
 
-// Notes that the present statement gives something again.
+// Notes that the present statement defines something again.
 void note_replaced(ForceField& into, const Statements& statements, std::string what,
                    const TextPlace& earlier);
 

@@ -1,4 +1,4 @@
-// The script between the parts of a CHARMM stream file: which of its statements are read.
+// Interprets the script statements between the parts of a CHARMM stream file.
 #pragma once
 #include "charmm/force_field.h"
 #include "charmm/statements.h"
@@ -45,8 +45,8 @@ private:
 
     Statements& statements_;
     ForceField& into_;
-    std::map<std::string, std::optional<std::string>, std::less<>> variables_;  // nothing: unknown
-    std::vector<std::size_t> open_blocks_;  // lines of IF that ENDIF has not closed
+    std::map<std::string, std::optional<std::string>, std::less<>> variables_;  // unset: unknown
+    std::vector<std::size_t> open_blocks_;  // lines of open IF blocks
 };
 
 }  // namespace palpa

@@ -8,9 +8,10 @@ namespace palpa {
 // One entry per atom; hydrogens, and what is meant to count for nothing, have no volume and no
 // energies.
 struct Solvation {
-    std::vector<double> volume;   // V, Å^3
-    std::vector<double> dg_ref;   // of the atom alone in a small molecule, kcal/mol
-    std::vector<double> dg_free;  // of its shell, kcal/mol
+    std::vector<double> volume;  // V, Å^3
+    std::vector<double>
+        dg_ref;  // reference solvation energy of the atom in a small molecule, kcal/mol
+    std::vector<double> dg_free;  // solvation energy of its shell, kcal/mol
     std::vector<double> lambda;   // thickness of its shell, Å
     std::vector<double> radius;   // R, Å
 };

@@ -8,15 +8,15 @@
 
 namespace palpa {
 
-// What a table says of a type of heavy atoms.
+// The row of a heavy atom type.
 struct SolvationRow {
     double volume = 0;         // Å^3, >= 0
     double dg_ref = 0;         // kcal/mol
     double dg_free = 0;        // kcal/mol
     double lambda = 0;         // Å, > 0
-    double radius = 0;         // Å, > 0, of the force field that the row was made for
-    std::string source;        // where the numbers are from
-    bool is_assigned = false;  // by analogy, which its authors did not publish
+    double radius = 0;         // Å, > 0, in the force field of the row
+    std::string source;        // source of the numbers
+    bool is_assigned = false;  // assigned by analogy, not published by the authors
     TextPlace place;
 };
 
@@ -34,7 +34,7 @@ struct SolvationTable {
 // that is not above 0, a type that comes twice, no type at all.
 SolvationTable parse_solvation_table(std::string_view text, const std::string& file);
 
-// The program's own table, EEF1-SB: part of the program.
+// The built-in table, EEF1-SB.
 const SolvationTable& eef1sb_table();
 std::string_view eef1sb_csv() noexcept;
 

@@ -17,20 +17,21 @@ class Statements {
 public:
     Statements(std::string_view text, const std::string& file);
 
-    // To the next statement; false at the end of the file.
+    // Goes to the next statement; false at the end of the file.
     bool next();
 
     std::size_t line_count() const noexcept { return lines_.size(); }
 
-    // All of the rest is about the present statement. Views hold until the next one.
+    // All functions below refer to the present statement. Views are valid until the next one.
     const std::vector<std::string_view>& words() const noexcept { return words_; }
     std::string_view text() const noexcept { return statement_; }
-    std::string_view keyword() const noexcept { return words_[0].substr(0, 4); }  // all that counts
-    TextPlace place() const { return {file_, line_, 0}; }  // of its first line
+    // The significant letters.
+    std::string_view keyword() const noexcept { return words_[0].substr(0, 4); }
+    TextPlace place() const { return {file_, line_, 0}; }  // of the first line of the statement
     [[noreturn]] void fail(const std::string& what) const;
 
-    // The word `at`, counted from 0; throws LoadError if there is none or it does not parse. `what`
-    // says in the message what was expected.
+    // The word `at`, counted from 0. Throws LoadError if it is missing or cannot be parsed; `what`
+    // names it in the message.
     std::string name(std::size_t at, const char* what) const;
     double real(std::size_t at, const char* what) const;
     std::int64_t whole_number(std::size_t at, const char* what) const;
@@ -41,7 +42,7 @@ public:
 
 private:
     std::vector<std::string_view> lines_;
-    std::size_t at_ = 0;  // the line to be read next
+    std::size_t at_ = 0;  // next line to read
     const std::string& file_;
     std::string statement_;
     std::vector<std::string_view> words_;

@@ -1,5 +1,5 @@
-// What the energy of a set of molecules is made of: bonded terms, charges, Lennard-Jones parameters
-// and exclusions. Built once, from a structure and a force field; constant after that.
+// The terms of the energy of a set of molecules: bonded terms, charges, Lennard-Jones parameters
+// and exclusions. Built once from a structure and a force field; constant after that.
 #pragma once
 #include "charmm/cmap_map.h"
 #include "charmm/solvation.h"
@@ -13,7 +13,7 @@
 
 namespace palpa {
 
-// Atoms are meant by index. Energies are in CHARMM's conventions: no factor one half, angles in
+// Atoms are given by index. Energies follow CHARMM's conventions: no factor one half, angles in
 // radian.
 
 // E = k (r - r0)^2
@@ -60,25 +60,25 @@ struct CmapTerm {
     std::uint32_t map;  // in Topology::cmap_maps
 };
 
-// Lennard-Jones numbers of one atom type. CHARMM writes the depth with a minus.
+// Lennard-Jones parameters of one atom type. CHARMM's files have the well depth with a minus.
 struct LennardJonesType {
     double epsilon;    // kcal/mol, >= 0
     double half_rmin;  // Å
 };
 
-// Lennard-Jones numbers of a pair: E = epsilon [(rmin/r)^12 - 2 (rmin/r)^6]
+// Lennard-Jones parameters of a pair: E = epsilon [(rmin/r)^12 - 2 (rmin/r)^6]
 struct LennardJonesPair {
     double epsilon;  // kcal/mol
     double rmin;     // Å, where the energy is -epsilon
 };
 
-// A pair of types, either way round, whose numbers are given instead of combined.
+// A pair of types, in either order, with explicit parameters in place of combined ones.
 struct Nbfix {
     std::uint32_t a, b;
     LennardJonesPair pair;
 };
 
-// The numbers of all pairs of types, as a full symmetric square.
+// The parameters of all pairs of types, as a full symmetric matrix.
 struct LennardJonesTable {
     std::size_t types = 0;
     std::vector<LennardJonesPair> pairs;
@@ -95,7 +95,7 @@ struct LennardJonesTable {
 LennardJonesTable build_lennard_jones_table(std::span<const LennardJonesType> types,
                                             std::span<const Nbfix> nbfix);
 
-// Which pairs the plain non-bonded sum leaves out: CHARMM's NBXMOD 5.
+// The pairs that the non-bonded sum leaves out: CHARMM's NBXMOD 5.
 struct Exclusions {
     // Atom i leaves out the atoms [first[i], first[i + 1]) of `atoms`: those up to three bonds away
     // with a higher index than its own, rising. One entry more than there are atoms.
@@ -116,7 +116,7 @@ Exclusions build_exclusions(std::span<const Bond> bonds, std::size_t atom_count)
 struct Topology {
     // One entry per atom.
     std::vector<double> charge;       // e
-    std::vector<std::uint32_t> type;  // in the Lennard-Jones tables
+    std::vector<std::uint32_t> type;  // index in the Lennard-Jones tables
 
     std::vector<Bond> bonds;
     std::vector<Angle> angles;
@@ -126,10 +126,10 @@ struct Topology {
     std::vector<CmapTerm> cmap_terms;
     std::vector<CmapMap> cmap_maps;
 
-    LennardJonesTable lennard_jones;    // of plain pairs
-    LennardJonesTable lennard_jones14;  // of pairs three bonds apart
+    LennardJonesTable lennard_jones;    // pairs other than 1-4
+    LennardJonesTable lennard_jones14;  // 1-4 pairs
     Exclusions exclusions;
-    std::optional<Solvation> solvation;  // none in vacuum
+    std::optional<Solvation> solvation;  // unset in vacuum
 
     std::size_t size() const noexcept { return charge.size(); }
 };

@@ -1,4 +1,4 @@
-// What is bonded in a structure as it came from a file.
+// Builds the connectivity of a structure as it was read from a file.
 #pragma once
 #include "charmm/force_field.h"
 #include "molecule/atoms.h"
@@ -6,8 +6,8 @@
 
 namespace palpa {
 
-// As build_connectivity (charmm/generate.h). Says in a line of its own that several locations of an
-// atom are given, or that all hydrogens are missing. Throws LoadError.
+// As build_connectivity (charmm/generate.h), with clear messages for structures with alternate
+// locations or without hydrogens. Throws LoadError.
 Connectivity type_structure(const ForceField& force_field, const Structure& structure);
 
 }  // namespace palpa

@@ -7,9 +7,9 @@
 
 namespace palpa {
 
-// All parameters of the force field as a .prm file that reads back to the same numbers: types with
-// their masses, bonds, angles, dihedrals, impropers, CMAP, non-bonded, NBFIX. Residues and patches
-// have no place there. `title`: lines without the leading '*'.
+// All parameters of the force field as text of a .prm file that reads back to the same numbers:
+// types with masses, bonds, angles, dihedrals, impropers, CMAP, non-bonded, NBFIX. Residues and
+// patches are not written. `title`: lines without the leading '*'.
 std::string format_parameters(const ForceField& force_field, std::string_view title);
 
 }  // namespace palpa

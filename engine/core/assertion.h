@@ -1,4 +1,5 @@
-// PALPA_ASSERT: our own mistakes, never bad input. On in debug builds and under the sanitizers.
+// PALPA_ASSERT checks for programming errors, never for bad input. On in debug builds and under the
+// sanitizers.
 #pragma once
 #ifdef PALPA_ASSERTIONS
 #include <cstdio>

@@ -1,4 +1,5 @@
-// Random numbers from a seed, the same on every machine: distributions of the library are not.
+// Random numbers from a seed, identical on every machine (the standard library's distributions are
+// not).
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -11,17 +12,17 @@ namespace palpa {
 
 class Draws {
 public:
-    // Each number of a seed is a row of its own.
+    // Each `number` of a seed gives an independent sequence.
     Draws(std::uint64_t seed, std::uint64_t number) : random_(seed * 1'000'003 + number) {}
 
     double between(double low, double high) { return low + (high - low) * share(); }
-    // Equally often in every decade.
+    // Uniform in the logarithm between low and high.
     double scale(double low, double high) {
         return std::exp(between(std::log(low), std::log(high)));
     }
     std::size_t below(std::size_t count) { return random_() % count; }
 
-    // Mean 0, standard deviation 1: two at a time, by Box and Muller.
+    // Normal distribution with mean 0 and standard deviation 1 (Box-Muller).
     double normal() {
         if (spare_) {
             const double kept = *spare_;
@@ -35,7 +36,7 @@ public:
     }
 
 private:
-    // From 0 to 1, without 1.
+    // Uniform from 0 (included) to 1 (excluded).
     double share() { return static_cast<double>(random_() >> 11U) * 0x1p-53; }
 
     std::mt19937_64 random_;

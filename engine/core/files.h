@@ -1,5 +1,5 @@
-// Whole text files, in and out, with errors that name the file. Nothing that is there is replaced
-// unless the caller says so, and links are never written through.
+// Reads and writes whole text files, with errors that name the file. Existing files are replaced
+// only on request, and links are never followed for writing.
 #pragma once
 #include "platform/file.h"
 
@@ -14,22 +14,22 @@
 
 namespace palpa {
 
-// The largest file that is read; a trace of every tick gets there after three quarters of an hour.
+// The largest file that is read. A trace of every tick reaches it after 45 minutes.
 inline constexpr std::uintmax_t most_file_bytes = std::uintmax_t{1} << 30;
 
-// The file's content. Throws LoadError if it is missing, no regular file, too large, or cannot be
-// read.
+// The content of the file. Throws LoadError if it is missing, not a regular file, too large or
+// unreadable.
 std::string read_text_file(const std::filesystem::path& path);
 
-// What happens where a file is there already. Refuse: LoadError, and the file stays as it is.
+// What to do with an existing file. Refuse: throw LoadError and leave the file unchanged.
 enum class Existing : std::uint8_t { Refuse, Replace };
 
-// Writes the file in one move, so that a reader sees nothing or the old content, or the new, never
-// half. A device or a pipe is written into. Throws LoadError if that cannot be done.
+// Writes the file atomically: a reader sees the old content or the new one. A device or a pipe is
+// written directly. Throws LoadError if that fails.
 void write_text_file(const std::filesystem::path& path, std::string_view text,
                      Existing existing = Existing::Refuse);
 
-// Several files, none of them where one cannot be written.
+// Several files, written together or not at all.
 struct TextFile {
     std::filesystem::path path;
     std::string text;
@@ -37,22 +37,22 @@ struct TextFile {
 };
 void write_text_files(std::span<const TextFile> files);
 
-// Before long work: throws LoadError where its result could not be written to `path`. A file that
-// is there may be replaced only if `overwrites`, and only if `mark` stands near its beginning: by
-// that the program knows what it wrote itself. Returns what to write with.
+// Call before long work: throws LoadError if the result cannot be written to `path`. An existing
+// file may be replaced only if `overwrites` is set and `mark`, which identifies the program's own
+// files, stands near its beginning. Returns how to write.
 Existing check_output(const std::filesystem::path& path, std::string_view mark, bool overwrites);
 
-// Whether `mark` stands in the first 4 KiB of a regular file that is no link, or the file begins
-// with `text`.
+// Whether `mark` is in the first 4 KiB of a regular file (not a link), or the file begins with
+// `text`.
 bool has_mark(const std::filesystem::path& path, std::string_view mark);
 bool begins_with(const std::filesystem::path& path, std::string_view text);
 
-// What a folder holds, sorted by name, at most `most`; nothing where it cannot be read.
+// The entries of a folder, sorted by name, at most `most`; empty if it cannot be read.
 std::vector<std::filesystem::path> list_folder(
     const std::filesystem::path& folder,
     std::size_t most = std::numeric_limits<std::size_t>::max());
 
-// A file that was not there before, written piece by piece. All throw LoadError.
+// A new file that is written piece by piece. All functions throw LoadError.
 class NewFile {
 public:
     explicit NewFile(std::filesystem::path path);
@@ -60,15 +60,15 @@ public:
     NewFile& operator=(const NewFile&) = delete;
 
     void write(std::string_view text);
-    void close();  // says what the system could not write
+    void close();  // throws if the system could not write everything
 
 private:
     std::filesystem::path path_;
     File file_;
 };
 
-// As long as this lives, no other run of the program gets the same folder to write into: it throws
-// LoadError there. The system takes the lock away from a program that ends, however it ends.
+// A lock on a folder: while it exists, another run of the program throws LoadError when it wants to
+// write into the same folder. The system releases the lock when the program ends.
 class FolderLock {
 public:
     explicit FolderLock(const std::filesystem::path& folder);

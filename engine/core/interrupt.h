@@ -1,20 +1,19 @@
-// That somebody wants the program to end, by Ctrl-C or another signal: what has to end in order,
-// above all with motors on, looks here.
+// Ends the program in order after Ctrl-C or another signal, above all while motors are on.
 #pragma once
 #include <array>
 
 namespace palpa {
 
-// From now on SIGINT, SIGTERM and SIGHUP (on Windows SIGBREAK) are noted; the next of the same kind
-// ends the program at once, as it always did. One that is ignored stays so.
+// From now on SIGINT, SIGTERM and SIGHUP (on Windows SIGBREAK) are only noted; a second signal of
+// the same kind ends the program at once. A signal that is ignored stays ignored.
 void note_interrupts() noexcept;
 
-// The newest of them; 0: none came.
+// The newest noted signal; 0: none.
 int noted_interrupt() noexcept;
 
-// While it lives these signals are only noted, so that the program can first remove what it must
-// not leave behind; then a noted signal acts as it would have. Long work checks `noted_interrupt`
-// meanwhile, or throws Interrupted.
+// While it exists these signals are only noted, so that the program can first remove temporary
+// files; afterwards a noted signal takes effect. Long work calls `noted_interrupt` meanwhile, or
+// throws Interrupted.
 class HeldInterrupts {
 public:
     HeldInterrupts() noexcept;
@@ -29,7 +28,7 @@ private:
 
 struct Interrupted {};
 
-// What a shell learns of a program that a signal ended, or else `code`.
+// The exit code of the program: 128 + the signal that ended it, or else `code`.
 inline int exit_code_after(int code) noexcept {
     return noted_interrupt() == 0 ? code : 128 + noted_interrupt();
 }

@@ -1,4 +1,4 @@
-// What a reader throws when its input cannot be used: where, what was read, what would be right.
+// The exception for unusable input: where, what was read, and what would be right.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -16,7 +16,7 @@ struct TextPlace {
     std::size_t column = 0;
 };
 
-// "file:line:column", leaving out what is 0.
+// "file:line:column", without the parts that are 0.
 std::string to_string(const TextPlace& place);
 
 // The message is one sentence in lower case without a full stop; what() puts the place before it,
@@ -25,7 +25,8 @@ class LoadError : public std::runtime_error {
 public:
     LoadError(const TextPlace& place, const std::string& message);
 
-    // Of many problems the message names the first ones and counts the others; those are here.
+    // For many problems: the message names the first ones and counts the others, which `further`
+    // contains.
     LoadError(const TextPlace& place, const std::string& message, std::vector<std::string> further);
     const std::vector<std::string>& further() const noexcept { return *further_; }
 

@@ -1,10 +1,10 @@
-// The machine that the program runs on.
+// Describes the machine.
 #pragma once
 #include <string>
 
 namespace palpa {
 
-// Its processor, as it calls itself, and how many threads that runs.
+// Name of the processor and its number of threads.
 std::string machine_name();
 
 }  // namespace palpa

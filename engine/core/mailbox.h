@@ -20,22 +20,22 @@ public:
         send();
     }
 
-    // The same without a copy: the value that is written, with whatever it held the last time but
-    // one or two, and when it is done.
+    // To write without a copy: the slot to fill, with an old value in it; then post it.
     Value& draft() noexcept { return slots_[write_]; }
     void send() noexcept {
         // The slot just written becomes the newest; the one that lay there is written next.
         write_ = newest_.exchange(write_ | fresh, std::memory_order_acq_rel) & slot_mask;
     }
 
-    // The newest value posted. False, and `value` untouched, if none came since the last read.
+    // Reads the newest value. Returns false and leaves `value` unchanged if there is none since the
+    // last read.
     bool read(Value& value) noexcept(plain) {
         if (!take()) return false;
         value = taken();
         return true;
     }
 
-    // The same without a copy: what was taken last stays the reader's until the next time.
+    // The same without a copy: the value taken stays valid for the reader until the next call.
     bool take() noexcept {
         if ((newest_.load(std::memory_order_relaxed) & fresh) == 0) return false;
         read_ = newest_.exchange(read_, std::memory_order_acq_rel) & slot_mask;

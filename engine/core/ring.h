@@ -24,7 +24,7 @@ public:
         return true;
     }
 
-    // All of them or none.
+    // Pushes all values or none.
     bool push(std::span<const Value> values) noexcept {
         const std::uint64_t at = pushed_.load(std::memory_order_relaxed);
         if (at - popped_.load(std::memory_order_acquire) + values.size() > Size) {
@@ -36,7 +36,7 @@ public:
         return true;
     }
 
-    // False, and `value` untouched, if none is left.
+    // Returns false and leaves `value` unchanged if the ring is empty.
     bool pop(Value& value) noexcept {
         const std::uint64_t at = popped_.load(std::memory_order_relaxed);
         if (at == pushed_.load(std::memory_order_acquire)) return false;

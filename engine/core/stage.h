@@ -1,4 +1,4 @@
-// How far long work has got, for whoever waits for it.
+// Reports the progress of long work.
 #pragma once
 #include <functional>
 #include <optional>
@@ -6,12 +6,11 @@
 
 namespace palpa {
 
-// What is being done, and how much of it is done, 0 to 1; nothing where the end is not known. May
-// be empty: then nobody waits. Called often; it must be cheap. It
-// may throw, which ends the work.
+// Called with the name of the present stage and its progress from 0 to 1 (unset if unknown). May be
+// empty. It is called often, so it must be cheap. It may throw to cancel the work.
 using StageFunction = std::function<void(std::string_view stage, std::optional<double> share)>;
 
-// Calls it if there is one.
+// Calls `on_stage` if it is set.
 inline void tell(const StageFunction& on_stage, std::string_view stage,
                  std::optional<double> share = {}) {
     if (on_stage) on_stage(stage, share);

@@ -1,4 +1,4 @@
-// Small pieces of text work that the readers share: words, numbers, near names.
+// Text functions that the readers share: words, numbers, near names.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace palpa {
 
-// Without blanks, tabs and carriage returns at either end.
+// The text without blanks, tabs and carriage returns at both ends.
 std::string_view trimmed(std::string_view text) noexcept;
 
 // The words between blanks and tabs; views into `text`.
@@ -20,8 +20,8 @@ std::vector<std::string_view> split_lines(std::string_view text);
 
 std::string upper_case(std::string_view text);
 
-// For messages, on one line of any terminal: letters of UTF-8 stay, control characters and bytes
-// that are no UTF-8 become "\\x1b".
+// Makes text safe for one line of a terminal: valid UTF-8 letters stay, control characters and
+// other bytes become "\\x1b".
 std::string printable(std::string_view text);
 
 // A finite number that fills `text` wholly (blanks at the ends allowed), or nothing. A leading '+'
@@ -29,7 +29,8 @@ std::string printable(std::string_view text);
 std::optional<double> find_real(std::string_view text);
 std::optional<std::int64_t> find_integer(std::string_view text);
 
-// The shortest digits that read back as the same number, with a point or exponent: no whole number.
+// The shortest text that reads back as the same number, with a point or exponent so that it is not
+// a whole number.
 std::string format_real(double value);
 
 // The name of `names` that differs from `name` by the fewest edits (a letter more, fewer or

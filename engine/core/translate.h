@@ -1,6 +1,6 @@
-// The window's words in the language of whoever looks at it: catalogues of GNU gettext, made of
-// engine/ui/locale/*.po. Where there is no catalogue, no gettext (Windows) or no translation of a
-// text, the English text is used. Numbers keep their decimal point in every language.
+// Translates the texts of the window by GNU gettext catalogues, made from engine/ui/locale/*.po.
+// Without a catalogue, without gettext (Windows) or without a translation the English text is used.
+// Numbers have a decimal point in every language.
 #pragma once
 #include <fmt/format.h>
 #include <cstddef>
@@ -10,14 +10,14 @@
 
 namespace palpa {
 
-// `english` must be a literal, so that tools/scripts/update_translations finds it. What is returned
-// stays valid.
+// The translation of `english`, which must be a literal so that tools/scripts/update_translations
+// finds it. The result stays valid.
 [[gnu::format_arg(1)]] const char* translated(const char* english);
 
-// One form of the two, or of as many as the language has, for that count.
+// The translation of the singular or plural form for this count.
 const char* translated_plural(const char* one, const char* many, std::size_t count);
 
-// Marks the literals of a table, which are translated where they are used.
+// Marks literals in tables that are translated where they are used.
 constexpr const char* for_translation(const char* english) { return english; }
 
 // fmt::format with a translated format; the English one is checked by the compiler, the others by
@@ -32,15 +32,15 @@ struct Language {
     std::string code, name;  // "de", "Deutsch"
 };
 
-// English, and those whose catalogues are beside the program.
+// English and the languages with a catalogue beside the program.
 std::vector<Language> list_languages();
 
-// By its code; empty: as LANGUAGE, LC_ALL, LC_MESSAGES and LANG say. False where it cannot be had:
-// the texts are English then. Until the first call they are English. On the main thread, while
-// nothing else reads the environment.
+// Chooses the language by its code; empty: by LANGUAGE, LC_ALL, LC_MESSAGES and LANG. Returns false
+// if it is not available; the texts are English then, as before the first call. Call on the main
+// thread while no other thread reads the environment.
 bool choose_language(const std::string& code);
 
-// The code of the present one.
+// The code of the present language.
 std::string language_in_use();
 
 }  // namespace palpa

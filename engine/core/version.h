@@ -1,4 +1,4 @@
-// The version and the commit that this program was built from.
+// The version and the commit from which this program was built.
 #pragma once
 
 namespace palpa {

@@ -1,10 +1,10 @@
-// Wall time, for connections and whoever waits for them.
+// Wall time, for connections and timeouts.
 #pragma once
 #include <chrono>
 
 namespace palpa {
 
-// Seconds since some moment; never goes back.
+// Monotonic time in seconds from an arbitrary origin.
 inline double wall_clock_s() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
         .count();

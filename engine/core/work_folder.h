@@ -1,4 +1,4 @@
-// A folder for what a command needs only while it works.
+// A temporary folder for the duration of a command.
 #pragma once
 #include "core/interrupt.h"
 
@@ -6,8 +6,8 @@
 
 namespace palpa {
 
-// A new folder among the temporary ones, gone with its owner; Ctrl+C ends the program only then.
-// Throws LoadError where none can be made.
+// Makes a new temporary folder and removes it at the end; Ctrl+C takes effect only after that.
+// Throws LoadError if none can be made.
 class WorkFolder {
 public:
     WorkFolder();
@@ -18,7 +18,7 @@ public:
     const std::filesystem::path& path() const noexcept { return path_; }
 
 private:
-    HeldInterrupts held_;  // first, so that it goes last
+    HeldInterrupts held_;  // declared first, so that it is destroyed last
     std::filesystem::path path_;
 };
 

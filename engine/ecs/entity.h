@@ -1,12 +1,11 @@
-// A handle of something in a World.
+// The handle of an entity in a World.
 #pragma once
 #include <compare>
 #include <cstdint>
 
 namespace palpa {
 
-// Counted from 1 in the order of creation, and never given to anything else. The default value
-// names nothing.
+// Numbered from 1 in the order of creation, never reused. The default value is no entity.
 struct Entity {
     std::uint32_t number = 0;
 

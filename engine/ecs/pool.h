@@ -11,20 +11,20 @@
 
 namespace palpa {
 
-// What a World needs of every pool, whatever its component type.
+// The interface of a pool that does not depend on the component type.
 class AnyPool {
 public:
     virtual ~AnyPool() = default;
 
     virtual std::unique_ptr<AnyPool> clone() const = 0;
-    // Nothing happens if the entity has no component here.
+    // Removes the entity's component, if it has one.
     virtual void remove(Entity entity) = 0;
 
     // In the order of their creation.
     std::span<const Entity> entities() const noexcept { return owners_; }
 
 protected:
-    // Place of the entity's component in the packed arrays, or where it would stand.
+    // Index of the entity's component in the packed arrays, or where it would be inserted.
     std::size_t place_of(Entity entity) const noexcept {
         return static_cast<std::size_t>(std::lower_bound(owners_.begin(), owners_.end(), entity) -
                                         owners_.begin());
@@ -33,14 +33,14 @@ protected:
         return place < owners_.size() && owners_[place] == entity;
     }
 
-    std::vector<Entity> owners_;  // beside the components
+    std::vector<Entity> owners_;  // owner of each component
 };
 
-// Entities are molecules, hands, marks: hundreds, found by bisection.
+// There are only hundreds of entities (molecules, hands, marks), so they are found by bisection.
 template <class Component>
 class Pool final : public AnyPool {
 public:
-    // Adds the component, or replaces the one that the entity has.
+    // Adds the component, or replaces the existing one.
     Component& set(Entity entity, Component component) {
         const std::size_t place = place_of(entity);
         if (is_at(place, entity)) return components_[place] = std::move(component);

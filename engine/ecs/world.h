@@ -1,4 +1,4 @@
-// All entities and their components, and what there is one of. Systems are functions that take a
+// The world: entities with their components, and resources. Systems are functions that take a
 // World.
 #pragma once
 #include "core/assertion.h"
@@ -28,11 +28,11 @@ public:
 
     Entity create();
 
-    // The entity's components go with it; its handle is dead from now on. A dead handle is ignored.
+    // Destroys the entity and its components; its handle is dead from then on. A dead handle is
+    // ignored.
     void destroy(Entity entity);
 
-    // The handle of a destroyed entity is alive again, without components, in its old place of the
-    // order.
+    // Revives a destroyed entity without components, at its old place in the order.
     void restore(Entity entity);
 
     bool is_alive(Entity entity) const noexcept {
@@ -77,7 +77,7 @@ public:
         visit_all(visit, std::tuple(find_pool<First>(), find_pool<Rest>()...));
     }
 
-    // What there is one of: a clock, settings, tables.
+    // Resources exist once per type: a clock, settings, tables.
     template <class Resource>
     Resource& set_resource(Resource resource) {
         return get_pool<Resource>().set(no_one, std::move(resource));
@@ -96,7 +96,7 @@ public:
     void remove_resource() {
         if (Pool<Resource>* const pool = find_pool<Resource>()) pool->remove(no_one);
     }
-    // One that must be there.
+    // The resource of this type, which must exist.
     template <class Resource>
     Resource& resource() noexcept {
         Resource* const found = find_resource<Resource>();
@@ -153,9 +153,9 @@ private:
         return static_cast<Pool<Component>*>(pools_[number].get());
     }
 
-    static constexpr Entity no_one{};  // that resources belong to
+    static constexpr Entity no_one{};  // owner of the resources
 
-    Entity last_;                   // that was created
+    Entity last_;                   // entity created last
     std::vector<Entity> entities_;  // alive, in the order of creation
     std::vector<std::unique_ptr<AnyPool>> pools_;
 };

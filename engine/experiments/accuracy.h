@@ -1,5 +1,6 @@
-// How exactly a scene's stroke is felt, for ranges of forces that must be felt and for
-// tolerances; against references that do not know what was asked nor the run's own error estimates.
+// Measures the accuracy of the force on the hand over a scene's stroke, for force ranges and
+// tolerances, against references that are independent of these settings and of the run's own error
+// estimates.
 #pragma once
 #include "session/statistics.h"
 
@@ -17,27 +18,27 @@ struct AccuracyOptions {
     // The weakest and the strongest force that must be felt.
     std::vector<std::array<double, 2>> ranges_pN{{20, 3000}, {50, 10000}, {200, 5000}};
     std::vector<double> tolerances_pN{50, 150, 500};
-    std::size_t samples = 20;  // of a stroke
+    std::size_t samples = 20;  // compared ticks per stroke
 };
 
 struct AccuracyResult {
     std::array<double, 2> range_pN{};
     double within_pN = 0;
     Summary summary;
-    double largest_hand_N = 0;  // sent
-    // Of each sample: the force that the servo rendered less the reference's.
+    double largest_hand_N = 0;  // largest force sent to the hand
+    // For each sample: rendered force minus reference, pN.
     std::vector<double> errors_pN;
     double ninety_pN = 0, within_share = 0;
-    double moving_pN = 0;  // by which the last quarter of a reference still changed it, median
+    double moving_pN = 0;  // median change of a reference over its last quarter, pN
 
-    // Requirements that were not met and that the run did not report, in words.
+    // Requirements that were not met although the run did not report it, as text.
     std::vector<std::string> unsaid() const;
 };
 
-// Reads the scene with all that is asked, before anything is played. Throws LoadError.
+// Reads the scene with all settings, before anything is played. Throws LoadError.
 void check_accuracy(const AccuracyOptions& options);
 
-// The stroke, with one range and one tolerance. Throws LoadError.
+// Plays the stroke with one range and one tolerance. Throws LoadError.
 AccuracyResult play_accuracy(const AccuracyOptions& options, const std::array<double, 2>& range_pN,
                              double within_pN);
 

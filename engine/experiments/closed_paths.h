@@ -1,5 +1,5 @@
-// Random hands and devices on closed paths in space. What the coupling did on them
-// is held against the continuous law along the same path of the handle.
+// Plays random hands and devices on closed paths in space, and compares with the continuous law
+// along the same path of the handle.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -15,7 +15,7 @@ struct ClosedPathOptions {
     std::vector<std::string> settings;  // "key=value", over the scene file and the path's own
     std::size_t count = 1000, first = 0;
     std::uint64_t seed = 1;
-    bool turn = false;  // the handle turns as well, and back
+    bool turn = false;  // the handle also turns, and back
 };
 
 struct ClosedPathResult {
@@ -25,31 +25,32 @@ struct ClosedPathResult {
     // By the force at the hand, but for the servo's own damping; by the continuous law along the
     // same path. + = generated.
     double work_J = 0, law_J = 0;
-    double drift_angstrom = 0;  // from where the law's molecule ends to where the molecule is
+    double drift_angstrom =
+        0;  // distance between the molecule and that of the continuous law at the end
     // The handle ends so far from where it began; once it is brought home, straight, the law has
     // done this work, and its molecule is so far from where it began.
     double open_mm = 0, closed_law_J = 0, closure_angstrom = 0;
-    double farthest_angstrom = 0;  // of the reference atoms, by the continuous law
-    double ripple_N = 0;           // above 3 Hz, over the last 4 s, which are at rest
-    double felt_share =
-        0;  // of the cap: the largest stiffness felt of the field where the molecule was
-    double largest_N = 0;        // felt
-    bool was_limited = false;    // by the stop or the thermal limit, unknown to the continuous law
-    double clipped_mm = 0;       // handle travel that the limits of a step did away with
-    double clamped_share = 0;    // of the time
-    bool was_held_back = false;  // by a stage of the safety chain graver than the thermal limit
+    double farthest_angstrom = 0;  // largest distance of the reference atoms by the continuous law
+    double ripple_N = 0;           // above 3 Hz, over the last 4 s, in which the hand rests
+    double felt_share = 0;         // largest stiffness felt as a share of the cap
+    double largest_N = 0;          // largest force on the hand
+    bool was_limited =
+        false;  // by the stop or the thermal limit, which the continuous law does not have
+    double clipped_mm = 0;       // clipped travel of the handle at the limits of a step
+    double clamped_share = 0;    // share of the time at the force limit
+    bool was_held_back = false;  // by a safety stage more severe than the thermal limit
 
     double extra_joule() const noexcept { return work_J - law_J; }
 };
 
-// Bars of a path. Drift has one where it is inside of `near_angstrom` and nothing turned;
-// energy where nothing turned.
+// Limits for a path. The limit of drift applies within `near_angstrom` if nothing turned; that of
+// energy if nothing turned.
 inline constexpr double most_extra_J = 1e-3, most_drift_angstrom = 0.1, near_angstrom = 6,
                         most_closed_path_ripple_N = 0.02, most_felt_share = 1.1;
 
 bool meets_limits(const ClosedPathResult& result, bool turned) noexcept;
 
-// Whether the scene has such paths and a continuous law, and no setting replaces them. Throws
+// Checks that the scene has a continuous law and that no setting replaces the path. Throws
 // LoadError.
 void check_closed_paths(const ClosedPathOptions& options);
 
@@ -60,10 +61,10 @@ struct ClosedPathCost {
 };
 ClosedPathCost find_closed_path_cost(const ClosedPathOptions& options);
 
-// Path `number` of a seed; the same whatever the others are. Throws LoadError.
+// Plays path `number` of a seed, independent of all other paths. Throws LoadError.
 ClosedPathResult play_closed_path(const ClosedPathOptions& options, std::size_t number);
 
-// All of them; `on_result` after each.
+// Plays all paths; calls `on_result` after each.
 std::vector<ClosedPathResult> play_closed_paths(
     const ClosedPathOptions& options,
     const std::function<void(std::size_t number, const ClosedPathResult&)>& on_result);

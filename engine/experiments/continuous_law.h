@@ -1,24 +1,25 @@
-// What the coupling would be without period, delay, limits, friction and damping: the yardstick of
-// a run in space, where even that does work on a closed path.
+// The ideal coupling without period, delay, limits, friction and damping. It is the reference for
+// runs in space, where even the ideal law does work on a closed path.
 #pragma once
 #include "ecs/world.h"
 #include "haptics/guarded.h"
 
 namespace palpa {
 
-// A rigid molecule goes by dx/A_d, and turns as the handle does; the hand feels the force law of
-// the force that is on it there, in double and of all pairs. Owns its world.
+// A rigid molecule moves by dx/A_d and turns as the handle does; the hand feels the force law of
+// the molecular force at that place, computed in double from all pairs. Owns its world.
 class ContinuousLaw {
 public:
-    // Begins where the simulation stands. Only for guarded coupling.
+    // Starts from the state of the simulation. For guarded coupling only.
     ContinuousLaw(GuardedSettings settings, World world);
 
-    // The handle has gone on by so much: by the midpoint rule, in steps of 0.01 Å at most.
+    // Follows a step of the handle by the midpoint rule, in steps of at most 0.01 Å.
     void follow(const HandleStep& handle);
 
     MoleculePose pose() const noexcept;
-    double work_joule() const noexcept { return work_J_; }           // done on the hand so far
-    double farthest_angstrom() const noexcept { return farthest_; }  // of the reference atoms
+    double work_joule() const noexcept { return work_J_; }  // work on the hand so far
+    // Largest distance of the reference atoms.
+    double farthest_angstrom() const noexcept { return farthest_; }
 
     // The largest stiffness (N/m) that a hand feels of a molecule elsewhere that goes by
     // `molecule_per_handle` of what the handle does.
@@ -27,7 +28,7 @@ public:
 private:
     struct Here {
         Vec3 hand_newton = Vec3::Zero();
-        Mat3 metre_per_metre = Mat3::Zero();  // molecule travel of handle travel
+        Mat3 metre_per_metre = Mat3::Zero();  // molecule travel per handle travel
     };
     Here find_here() const;
 

@@ -16,9 +16,9 @@ enum class Question { Stiffer, AttractsMore };
 inline constexpr std::array<std::string_view, 2> question_names{"stiffer", "attracts-more"};
 
 struct ForcedChoiceOptions {
-    StudyOptions study;  // rounds, manner and limit have no part
+    StudyOptions study;  // rounds, manner and limit are not used
     Question question = Question::Stiffer;
-    std::size_t repeats = 10;  // of every pair
+    std::size_t repeats = 10;  // repetitions of every pair
 };
 
 // All forces between the molecules of one of a pair are this much larger than of the other, as
@@ -45,7 +45,7 @@ struct Choice {
     CouplingMode mode = CouplingMode::Guarded;
     double level = 0;
     double reference = 0, comparison = 0;  // N or N/m, without the noise of comparing
-    bool is_more = false;                  // answered so of the comparison
+    bool is_more = false;                  // the answer: the comparison is more
 };
 
 // All pairs, in every mode of the study; `on_choice` after each. A pair is the same whatever else
@@ -54,7 +54,7 @@ std::vector<Choice> play_choices(
     const ForcedChoiceOptions& options,
     const std::function<void(std::size_t done, std::size_t of)>& on_choice = {});
 
-// A mode's answers by level.
+// The answers of a mode by level.
 std::vector<AnsweredLevel> count_answers(CouplingMode mode, const std::vector<Choice>& choices);
 
 }  // namespace palpa

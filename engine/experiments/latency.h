@@ -1,4 +1,4 @@
-// How long it takes from what a device says to what it plays.
+// Measures the latency from the report of a device to the force that it plays.
 #pragma once
 #include "haptics/device.h"
 
@@ -16,7 +16,7 @@ class AnsweringServo {
 public:
     using Clock = std::chrono::steady_clock;
 
-    // The device is this servo's until it is destroyed.
+    // The servo uses the device until it is destroyed.
     explicit AnsweringServo(Device& device);
     AnsweringServo(const AnsweringServo&) = delete;
     AnsweringServo& operator=(const AnsweringServo&) = delete;
@@ -24,11 +24,11 @@ public:
 
     static double newton(bool is_pressed) noexcept { return is_pressed ? 1.4 : 1.0; }
 
-    // How often the force has changed, and when it was last written.
+    // Number of changes of the force, and time of the last write.
     int answers() const noexcept { return answers_; }
     Clock::time_point answered() const noexcept { return answered_; }
 
-    // Of every tick: from before the reading to after the force, us. Ends the servo.
+    // For every tick: time from before the reading to after the force, µs. Ends the servo.
     std::vector<double> stop();
 
 private:

@@ -1,5 +1,5 @@
-// How good approximate ligands are: residues of the force field against what is made for them when
-// their own entry is withheld.
+// Measures the quality of approximate ligands: residues of the force field are compared with the
+// approximation that is made when their own entry is hidden.
 #pragma once
 #include "charmm/force_field.h"
 
@@ -11,9 +11,9 @@
 namespace palpa {
 
 struct WaterPose {
-    std::string atom;        // of the residue, that the water is at
-    double own = 0;          // interaction energy, kcal/mol, with the residue's own numbers
-    double approximate = 0;  // and with the approximate ones
+    std::string atom;        // atom of the residue next to the water
+    double own = 0;          // interaction energy with the residue's own parameters, kcal/mol
+    double approximate = 0;  // and with approximate parameters
 };
 
 struct LigandComparison {
@@ -23,11 +23,11 @@ struct LigandComparison {
     double charge_rms = 0;  // error of partial charges over all atoms, e
     std::size_t analogies = 0;
     double highest_penalty = 0;
-    // Atom, own type and approximate one, where they differ.
+    // Atom, own type and approximate type where they differ.
     std::vector<std::array<std::string, 3>> wrong;
     std::vector<WaterPose> poses;
 
-    double pose_rms() const noexcept;  // error, kcal/mol; 0 without poses
+    double pose_rms() const noexcept;  // rms error, kcal/mol; 0 without poses
 };
 
 // `count` of the force field's model compounds (ligands/model_compounds.h) without lone pairs, of 6

@@ -1,4 +1,4 @@
-// From a structure file to a scene: read, prepared, given something for the hand.
+// Makes a scene from a structure file: reads and prepares it, and chooses what the hand holds.
 #pragma once
 #include "core/stage.h"
 #include "experiments/tune_scene.h"
@@ -12,23 +12,23 @@
 namespace palpa {
 
 struct SceneRequest {
-    std::filesystem::path structure;                 // as read_structure takes it
+    std::filesystem::path structure;                 // a file for read_structure
     std::vector<std::filesystem::path> force_field;  // files, read after the built-in one
-    bool only_these_files = false;                   // in place of it
+    bool only_these_files = false;                   // without the built-in force field
     PrepareSettings settings{};
-    bool makes_scene = true;  // false: a system alone
-    std::string grab{};       // as of tune_scene
-    std::string title{};      // what the files say of themselves; empty: a line of our own
+    bool makes_scene = true;  // false: only the prepared system
+    std::string grab{};       // as for tune_scene
+    std::string title{};      // title in the files; empty: a default one
 };
 
 struct MadeScene {
     PreparedSystem system;
     TunedScene scene;
-    std::string title;  // for write_prepared
+    std::string title;  // title for write_prepared
 };
 
-// A structure of which no scene can be made is prepared all the same, and the report says why.
-// Throws LoadError as prepare_system does (UnknownResidues too), and where `grab` names nothing.
+// If no scene can be made, the structure is prepared all the same and the report gives the reason.
+// Throws LoadError as prepare_system does (also UnknownResidues), and if `grab` names nothing.
 MadeScene make_scene(const SceneRequest& request, const StageFunction& on_stage);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// A scene's lesson, done by an emulated operator, or by hands that know nothing of it.
+// Plays a scene's lesson by an emulated operator, or by hands that ignore it.
 #pragma once
 #include "scene/description.h"
 
@@ -9,21 +9,21 @@
 
 namespace palpa {
 
-// The operator does what the steps say (scene/description.h). Idle: a hand that holds still.
-// Random: one that goes smoothly from place to place of the workspace, drawn by a seed. These two
-// change nothing and answer nothing.
+// Operator: does what the steps require (scene/description.h). Idle: a hand that holds still.
+// Random: a hand that moves smoothly between random places of the workspace. Idle and Random change
+// nothing and answer nothing.
 enum class LessonPlayer { Operator, Idle, Random };
 
 struct LessonStepResult {
-    bool was_reached = false;  // the steps before it are done
+    bool was_reached = false;  // the previous steps are done
     bool is_done = false;
-    double at_s = 0;              // when it was done, or the end
-    std::optional<double> value;  // when it was done, or the nearest to what is wanted
+    double at_s = 0;              // time when it was done, or of the end, s
+    std::optional<double> value;  // value then, or the nearest to the required one
 };
 
 struct LessonResult {
     std::vector<LessonStepResult> steps;
-    double seconds = 0;  // simulated
+    double seconds = 0;  // simulated s
     bool is_done() const noexcept;
 };
 

@@ -1,4 +1,4 @@
-// How often somebody says "more", over how much more it was: a curve through such answers.
+// Fits a psychometric curve to answers: the share of "more" over the true difference.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -11,21 +11,21 @@ namespace palpa {
 // are to be equally hard: for ratios their logarithm.
 struct AnsweredLevel {
     double level = 0;
-    std::size_t answers = 0, more = 0;  // all, and "more" of them
+    std::size_t answers = 0, more = 0;  // number of answers, and of those that are "more"
 };
 
-// Of this share of the answers nobody looked at what was asked: half of them say "more".
+// Share of lapses, answers without attention; half of them are "more".
 inline constexpr double lapse_share = 0.02;
 
 // P("more") = lapse/2 + (1 - lapse) Φ((level - middle)/width), Φ the normal distribution's.
 struct PsychometricCurve {
-    double middle = 0;  // where both answers are as likely: 0 without a bias
+    double middle = 0;  // level at which both answers are equally likely: 0 without bias
     double width = 1;
 
     double share(double level) const noexcept;
-    // From the middle to where 3 of 4 say "more", but for lapses.
+    // Difference from the middle to the level with 3 of 4 answers "more", without lapses.
     double threshold() const noexcept;
-    // Of Φ in its middle, for each unit of the level.
+    // Slope of Φ at the middle, per unit of the level.
     double slope() const noexcept;
 };
 
@@ -53,7 +53,7 @@ struct PsychometricFit {
     double middle_error = 0, threshold_error = 0;
 };
 
-// By maximum likelihood. Without answers, or with all at one level, it is TooFlat.
+// Fits by maximum likelihood. Without answers, or with all at one level, the result is TooFlat.
 PsychometricFit fit_psychometric(std::span<const AnsweredLevel> levels);
 
 }  // namespace palpa

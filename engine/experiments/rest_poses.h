@@ -28,29 +28,29 @@ namespace palpa {
 inline constexpr std::string_view rest_poses_mark = "# Palpa poses 1";
 
 struct RestMove {
-    Vec3 by;         // of the hand, Å
-    Vec3 change_pN;  // of the force on it, completely relaxed at both ends
+    Vec3 by;         // move of the hand, Å
+    Vec3 change_pN;  // change of the force on it, completely relaxed at both ends
     bool is_snap = false;
 };
 
 // Coordinates as in TorsionState.
 struct RestPose {
     double energy = 0;             // kcal/mol
-    Vec3 force_pN = Vec3::Zero();  // on the hand
-    std::vector<double> angles;    // of each body, rad
-    std::vector<Quat> turns;       // of each molecule; as read, of length 1 within 1e-6
-    std::vector<Vec3> shifts;      // of each molecule, Å
-    std::vector<Vec3> springs;     // place of each, Å
+    Vec3 force_pN = Vec3::Zero();  // force on the hand
+    std::vector<double> angles;    // angle of each body's joint, rad
+    std::vector<Quat> turns;       // turn of each molecule; as read, of length 1 within 1e-6
+    std::vector<Vec3> shifts;      // shift of each molecule, Å
+    std::vector<Vec3> springs;     // place of each spring, Å
     std::vector<RestMove> moves;
-    std::size_t line = 0;  // in the file it was read from
+    std::size_t line = 0;  // line in the file
 };
 
-// The hand is at one place in both.
+// The same pose relaxed with all pairs and with a cutoff.
 struct RestPosePair {
     RestPose all_pairs, with_cutoff;
 };
 
-// What they are poses of.
+// The model of the poses.
 struct PosedModel {
     std::size_t atoms = 0, bodies = 0, molecules = 0, springs = 0;
     double cutoff = 0;  // Å
@@ -63,10 +63,10 @@ struct RestPoses {
     std::vector<RestPosePair> poses;  // one or more
 };
 
-// Throws LoadError with the line for whatever is not as above.
+// Throws LoadError with the line for any deviation from this format.
 RestPoses parse_rest_poses(std::string_view text, const std::string& file);
 
-// The same of a file, which must hold poses of that model.
+// The same for a file, which must contain poses of this model.
 RestPoses read_rest_poses(const std::filesystem::path& path, const PosedModel& of);
 
 std::string format_rest_poses(const RestPoses& poses);

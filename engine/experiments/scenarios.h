@@ -1,5 +1,5 @@
-// Random hands, devices, periods and speeds on a scene of one axis. None may
-// generate energy, end in a limit cycle or go through.
+// Plays random hands, devices, periods and speeds on a scene of one axis. None may generate energy,
+// end in a limit cycle or pass through the wall.
 #pragma once
 #include "core/draws.h"
 
@@ -19,7 +19,7 @@ struct ScenarioOptions {
     std::uint64_t seed = 1;
 };
 
-// A hand on a device and a period, as "key=value".
+// A random hand, device and period, as "key=value".
 std::vector<std::string> draw_hand(Draws& draws);
 
 struct ScenarioResult {
@@ -28,24 +28,24 @@ struct ScenarioResult {
     // that the molecule went; + = generated.
     double generated_J = 0;
     double ripple_N = 0;          // above 3 Hz, over the last 4 s
-    double closest_angstrom = 0;  // on the line
+    double closest_angstrom = 0;  // closest distance on the line
     bool went_through = false;
-    bool was_held_back = false;  // by a stage of the safety chain graver than the thermal limit
-    double clamped_share = 0;    // of the time
+    bool was_held_back = false;  // by a safety stage more severe than the thermal limit
+    double clamped_share = 0;    // share of the time at the force limit
 
     bool is_calm() const noexcept;
 };
 
-// Bars of a scenario.
+// Limits for a scenario.
 inline constexpr double most_generated_J = 1e-3, most_ripple_N = 0.02;
 
-// Whether the scene has one axis. Throws LoadError.
+// Checks that the scene has one axis. Throws LoadError.
 void check_scenarios(const ScenarioOptions& options);
 
-// Scenario `number` of a seed; the same whatever the others are. Throws LoadError.
+// Plays scenario `number` of a seed, independent of all others. Throws LoadError.
 ScenarioResult play_scenario(const ScenarioOptions& options, std::size_t number);
 
-// All of them; `on_result` after each.
+// Plays all scenarios; calls `on_result` after each.
 std::vector<ScenarioResult> play_scenarios(
     const ScenarioOptions& options,
     const std::function<void(std::size_t number, const ScenarioResult&)>& on_result);

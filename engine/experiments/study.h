@@ -1,5 +1,5 @@
-// The paper's experiment: who looks for the place without force in which mode, how far from it and
-// how soon they say that they are there, and what that comes to.
+// The paper's experiment: participants search for the place without force in each mode; plan,
+// results and their summary.
 #pragma once
 #include "core/draws.h"
 #include "scene/description.h"
@@ -16,7 +16,7 @@ namespace palpa {
 struct StudyTrial {
     std::size_t participant = 1;
     std::size_t round = 1;
-    std::size_t place = 1;  // in the round's order
+    std::size_t place = 1;  // position in the order of the round, from 1
     CouplingMode mode = CouplingMode::Guarded;
 
     friend bool operator==(const StudyTrial&, const StudyTrial&) = default;
@@ -27,27 +27,26 @@ struct StudyTrial {
 std::vector<StudyTrial> plan_study(std::size_t participant, std::size_t rounds,
                                    std::span<const CouplingMode> modes, std::uint64_t seed);
 
-// The row of draws that is this trial's alone, whatever its place in the order; and the
-// participant's.
+// The random sequence of this trial, independent of its position in the order.
 std::uint64_t trial_number(const StudyTrial& trial) noexcept;
 std::uint64_t participant_number(std::size_t participant) noexcept;
 
-// How far outside of the place to be found (Å) a trial begins: the first of its draws.
+// Start distance outside of the place to be found, Å: the first draw of the trial.
 double draw_start(Draws& draws);
 
 struct StudyResult {
     StudyTrial trial;
     double start_angstrom = 0;
-    double found_angstrom = 0;  // at the end
-    double off_angstrom = 0;    // from the true rest, + outside
+    double found_angstrom = 0;  // final distance
+    double off_angstrom = 0;    // deviation from the true place, + outside
     double seconds = 0;
-    bool is_finished = false;   // the key was pressed before the time was over
-    bool went_through = false;  // further in than any hand could be held
+    bool is_finished = false;   // the key was pressed in time
+    bool went_through = false;  // further in than the repulsive wall
 };
 
 struct Spread {
     double mean = 0, median = 0;
-    std::optional<double> deviation;  // standard, of a sample; nothing of a single value
+    std::optional<double> deviation;  // standard deviation of the sample; unset for a single value
 };
 Spread find_spread(std::span<const double> values);
 
@@ -55,20 +54,20 @@ Spread find_spread(std::span<const double> values);
 struct StudyRow {
     CouplingMode mode = CouplingMode::Guarded;
     std::size_t trials = 0;
-    Spread distance_angstrom{};  // without its sign
+    Spread distance_angstrom{};  // absolute distance
     Spread off_angstrom{};
     Spread time_s{};
     double finished_share = 0, through_share = 0;
 };
 
-// A row for each mode, in their order; modes without a trial have none.
+// One row for each mode with trials, in the given order.
 std::vector<StudyRow> summarise_study(std::span<const CouplingMode> modes,
                                       std::span<const StudyResult> results);
 
-// A table's first line, and one line a trial.
+// Header line of a table, and one line for each trial.
 std::string trial_names();
 std::string format_trials(std::span<const StudyResult> results);
-// In Markdown.
+// The table in Markdown.
 std::string format_study_table(std::span<const StudyRow> rows);
 
 }  // namespace palpa

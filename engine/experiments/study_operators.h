@@ -1,5 +1,4 @@
-// The paper's experiment, played by emulated operators; what people's trials have in common with
-// it.
+// Plays the paper's experiment with emulated operators; also what trials of people share with it.
 #pragma once
 #include "devices/emulated_omni.h"
 #include "devices/seeking_operator.h"
@@ -21,7 +20,7 @@ namespace palpa {
 struct StudyOptions {
     std::filesystem::path scene;
     std::vector<std::string> settings;  // "key=value", over the scene file
-    std::size_t operators = 5;          // 0: people
+    std::size_t operators = 5;          // 0: people take part
     std::size_t rounds = 3;
     OperatorManner manner = OperatorManner::Naive;
     std::vector<CouplingMode> modes{CouplingMode::VariableForceVariableDisplacement,
@@ -31,16 +30,17 @@ struct StudyOptions {
                                     CouplingMode::NoForce,
                                     CouplingMode::Guarded};
     std::uint64_t seed = 1;
-    double limit_s = 90;  // of a trial
+    double limit_s = 90;  // time limit of a trial
 };
 
-// What the paper declares for its waters; a setting of run.period_ms says otherwise.
+// The period in the paper for its waters; the setting run.period_ms replaces it.
 inline constexpr double study_period_ms = 14;
 
-// One trial of an emulated operator; the same whatever else is played. Throws LoadError.
+// Plays one trial of an emulated operator, independent of all others. Throws LoadError.
 StudyResult play_trial(const StudyOptions& options, const StudyTrial& trial);
 
-// All of them, participant by participant in the order of their plans; `on_result` after each.
+// Plays all trials, participant by participant in the order of their plans; calls `on_result` after
+// each.
 std::vector<StudyResult> play_study(
     const StudyOptions& options,
     const std::function<void(std::size_t done, std::size_t of)>& on_result = {});
@@ -50,15 +50,15 @@ std::vector<StudyResult> play_study(
 // With a study's period, then what the person at the command line says, then `settings`.
 SceneDescription read_study_scene(const StudyOptions& options,
                                   const std::vector<std::string>& settings);
-// The place that is to be found, Å.
+// The place without force, Å.
 double find_rest(const SceneDescription& scene, const World& world);
 double find_rest(const StudyOptions& options);
-// Who is further in than this (Å) went through: no hand can distinguish the forces there.
+// A participant further in than this (Å) went through: forces there cannot be distinguished.
 double find_wall(const World& world, double outermost);
 // The force that was searched, from 3 nN of repulsion outward, for figures; and its columns.
 inline constexpr std::string_view line_names = "distance_angstrom,force_nN\n";
 std::string format_line(const StudyOptions& options);
-// Whether there is such a place, and a hand.
+// Checks that the scene has such a place, and a hand.
 void check_study(const StudyOptions& options);
 // The scene's, on a bench that is long enough: the way in is longer than an Omni's box, and nobody
 // here knows how to clutch.

@@ -1,4 +1,4 @@
-// Plays the scene of a prepared system, and gives it the gains and the period that it needs here.
+// Makes the scene of a prepared system: plays it to find suitable gains and a period.
 #pragma once
 #include "core/files.h"
 #include "core/stage.h"
@@ -10,11 +10,11 @@
 namespace palpa {
 
 struct TunedScene {
-    std::vector<TextFile> files;  // of the scene, named without folder; empty: there is none
+    std::vector<TextFile> files;  // files of the scene, names without folder; empty: no scene
     std::string in_hand;          // "residue PRO 36 of A, on a spring"
-    // Of the emulated hand's stroke, with the gains and the period of the file.
-    double felt_newton = 0;     // the largest force, in any direction
-    double moved_angstrom = 0;  // of what is in the hand, its middle
+    // From the emulated hand's stroke with the gains and the period of the file.
+    double felt_newton = 0;     // largest force in any direction
+    double moved_angstrom = 0;  // largest move of the centre of what the hand holds
 };
 
 // Chooses what the hand holds (prepare/hand_choice.h, `grab`; a residue where a chain that was not

@@ -1,5 +1,5 @@
-// A molecule is taken out of its pocket and brought back, by several hands, periods,
-// modes and numbers of active joints; or random ones of all these.
+// Takes a molecule out of its pocket and back, for several hands, periods, modes and numbers of
+// active joints; or for random ones.
 #pragma once
 #include "scene/description.h"
 #include "session/statistics.h"
@@ -18,9 +18,9 @@ struct UnbindingOptions {
     std::vector<std::string> settings;  // "key=value", over the scene file and the choices below
     std::vector<std::string> grips{"medium", "firm"}, modes{"guarded", "4"};
     std::vector<double> periods_ms{1, 14, 83};
-    bool fastest = false;  // and at the shortest period that this machine keeps
-    std::vector<std::int64_t> active{StaticsDescription{}.active};  // degrees of freedom
-    std::size_t random = 0;                                         // so many random ones instead
+    bool fastest = false;  // also at the shortest period that this machine keeps
+    std::vector<std::int64_t> active{StaticsDescription{}.active};  // active degrees of freedom
+    std::size_t random = 0;  // number of random cases in place of the lists
     std::uint64_t seed = 1;
 };
 
@@ -39,12 +39,12 @@ struct UnbindingResult {
     // the same way, of the force that the simulation found at its poses (trapezia), unclutched. And
     // the same while at the stop or the thermal limit, unknown to the law.
     double off_J = 0, off_at_limits_J = 0;
-    std::optional<double> ripple_N;  // in hold, after it came back
+    std::optional<double> ripple_N;  // ripple at rest, after the molecule came back
     // Share of the ticks with the force at the clamp though the molecule felt 3 nN or less.
     double cut_share = 0;
     std::size_t clutches = 0;
-    std::optional<double> out_s;   // when its reference atom was 10 Å from where it began
-    std::optional<double> back_s;  // and when it was there again, within 0.3 Å
+    std::optional<double> out_s;   // time when its reference atom was 10 Å from its start
+    std::optional<double> back_s;  // time when it was back within 0.3 Å
     double wall_s = 0;
 
     // Out: its centre of mass went 10 Å and more, and there no heavy atom was within 4 Å of others.

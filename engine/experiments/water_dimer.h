@@ -1,4 +1,4 @@
-// The dimer of two rigid waters with the lowest energy.
+// Finds the dimer of two rigid waters with the lowest energy.
 #pragma once
 #include "charmm/force_field.h"
 #include "math/vec.h"
@@ -7,7 +7,7 @@
 
 namespace palpa {
 
-// A rigid water as a force field has it.
+// A rigid water of a force field.
 struct RigidWater {
     double bond = 0;                                      // Å
     double angle = 0;                                     // rad

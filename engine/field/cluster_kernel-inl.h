@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace palpa::HWY_NAMESPACE {
 namespace {
 
-// As many atoms as there are lanes: some of one cluster, or two clusters.
+// Loads as many atoms as there are lanes: part of one cluster, or two clusters.
 HWY_INLINE V load_columns(const ClusterAtoms::Column& first,
                           [[maybe_unused]] const ClusterAtoms::Column& second, std::size_t column) {
 #if HWY_MAX_BYTES == 64
@@ -31,7 +31,7 @@ HWY_INLINE void subtract(W force, double* sums) {
     hn::Store(hn::Sub(hn::Load(doubles, sums), force), doubles, sums);
 }
 
-// Takes from the forces on the columns what their rows got.
+// Subtracts the forces on the rows from those on their columns.
 HWY_INLINE void subtract_from_columns(V force, std::array<double, cluster_size>& first,
                                       std::array<double, cluster_size>& second,
                                       std::size_t column) {
@@ -55,7 +55,7 @@ HWY_INLINE void add_force(V gradient, V distance, V& on_column, float* on_row) {
 #endif
 }
 
-// Pairs of a row that count.
+// Mask of the pairs of a row.
 HWY_INLINE M load_mask(std::uint64_t first, std::uint64_t second, std::uint32_t row,
                        std::size_t column) {
     std::uint8_t bits[8] = {};
@@ -69,7 +69,7 @@ HWY_INLINE M load_mask(std::uint64_t first, std::uint64_t second, std::uint32_t 
     return hn::LoadMaskBits(floats, bits);
 }
 
-// Rows that have a pair.
+// Bits of the rows with at least one pair.
 HWY_INLINE std::uint32_t rows_of(std::uint64_t pairs) {
     pairs |= pairs >> 4;
     pairs |= pairs >> 2;

@@ -1,6 +1,5 @@
-// Which pairs of a set of atoms act on each other, clusters of eight atoms beside clusters: what
-// the single-precision kernel (field/pair_kernel.h) sums over. After S. Páll, B. Hess, Comput.
-// Phys. Commun. 184, 2641 (2013).
+// The neighbour list: pairs of clusters of eight atoms, over which the single-precision kernel
+// (field/pair_kernel.h) sums. After S. Páll, B. Hess, Comput. Phys. Commun. 184, 2641 (2013).
 #pragma once
 #include "field/cluster_tree.h"
 #include "field/near_rows.h"
@@ -15,7 +14,7 @@
 
 namespace palpa {
 
-// Fills the places of the last cluster that no atom has.
+// Fills the empty places of the last cluster.
 inline constexpr std::uint32_t no_atom = std::numeric_limits<std::uint32_t>::max();
 
 // A cluster beside the one whose tile this is, all eight columns: bit r of `rows` is set where row
@@ -25,25 +24,25 @@ struct ClusterTile {
     std::uint32_t rows = 0;
 };
 
-// The same where some pairs are left out: bit 8 r + c is that of row r and column c.
+// The same with some pairs left out: bit 8 r + c stands for row r and column c.
 struct MaskedTile {
     std::uint32_t cluster = 0;
     std::uint64_t pairs = 0;
 };
 
-// Pairs that the tile of two clusters leaves out.
+// The pairs that a tile leaves out.
 struct TileGap {
     std::uint32_t row_cluster = 0, cluster = 0;
     std::uint64_t pairs = 0;
 };
 
-// What `update_cluster_list` goes on from.
+// State of the list for `update_cluster_list`.
 struct ClusterListMemory {
     std::vector<std::uint32_t> place_of;  // in `ClusterList::atoms`, of each atom
     std::vector<TileGap> gaps;            // of cluster c: [first_gap[c], first_gap[c + 1]), sorted
     std::vector<std::size_t> first_gap;
     ClusterTree tree;                         // by `ClusterList::positions`
-    std::size_t rows = 0, rows_at_build = 0;  // of all plain tiles: what the kernel has to do
+    std::size_t rows = 0, rows_at_build = 0;  // rows of all plain tiles, the work of the kernel
 
     struct FoundTile {
         std::uint32_t row_cluster, cluster, rows;
@@ -90,8 +89,8 @@ ClusterList build_cluster_list(std::span<const Vec3> positions,
 
 enum class ListChange {
     None,
-    Tiles,    // what stands by cluster stays right
-    Clusters  // built anew
+    Tiles,    // the tiles were updated; clusters are the same
+    Clusters  // the list was rebuilt
 };
 
 // Where an atom has moved more than half the skin since its place in the list was taken, finds the
@@ -109,7 +108,7 @@ ListChange update_cluster_list(std::span<const Vec3> positions,
                                std::span<const std::array<std::uint32_t, 2>> left_out,
                                std::span<const std::uint32_t> moved, ClusterList& list);
 
-// The pairs of all tiles, one by one.
+// The pairs of all tiles as a list.
 std::vector<std::array<std::uint32_t, 2>> list_pairs(const ClusterList& list);
 
 // Whether a pair that is not in the list may have come nearer than the cutoff: an atom has moved

@@ -1,4 +1,4 @@
-// What the sums over a list of clusters by kernels share.
+// Helpers of the kernels that sum over a cluster list.
 #pragma once
 #include "field/cluster_list.h"
 #include "field/grid.h"
@@ -13,7 +13,7 @@
 
 namespace palpa {
 
-// The middle of the atoms where the list was built; zero where that is nowhere.
+// The centre of the atoms at the last build of the list; zero if it is not finite.
 inline Vec3 find_cluster_origin(const ClusterList& list) noexcept {
     Vec3 low = Vec3::Zero(), high = Vec3::Zero();
     for (std::size_t i = 0; i < list.positions.size(); ++i) {
@@ -25,14 +25,14 @@ inline Vec3 find_cluster_origin(const ClusterList& list) noexcept {
     return origin.allFinite() ? origin : Vec3::Zero();
 }
 
-// Puts place p of a list, which no atom has, far from all atoms and from the like of it.
+// Moves the empty place p of a list far from all atoms and from other empty places.
 template <class Atoms>
 void place_filler(std::size_t p, Atoms& atoms) noexcept {
     for (auto& column : atoms.high)
         column[p % cluster_size] = 4e4F + 16 * static_cast<float>(p % (2 * cluster_size));
 }
 
-// Whether all are near enough to the origin.
+// Whether all atoms are near enough to the origin.
 template <class Atoms>
 bool place_in_clusters(const ClusterList& list, std::span<const Vec3> positions, const Vec3& origin,
                        std::vector<Atoms>& clusters) noexcept {

@@ -1,5 +1,5 @@
-// Places of clusters of atoms, the boxes around them and around ranges of them, halved again and
-// again: which clusters may be near one, and what changes when a few have moved.
+// A tree of bounding boxes of atom clusters, to find neighbouring clusters and to update it when a
+// few have moved.
 #pragma once
 #include "field/near_rows.h"
 #include "math/vec.h"
@@ -12,7 +12,7 @@
 
 namespace palpa {
 
-// Empty before the first point.
+// A bounding box; empty before the first point.
 struct Box {
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
     Vec3 high = -low;
@@ -41,7 +41,7 @@ public:
     // place.
     void build(std::span<const std::uint32_t> atoms, std::span<const Vec3> positions);
 
-    // After the atoms of one cluster have moved.
+    // Updates the tree after the atoms of one cluster have moved.
     void move(std::span<const std::uint32_t> atoms, std::span<const Vec3> positions,
               std::uint32_t cluster) noexcept;
 
@@ -62,7 +62,7 @@ private:
         std::size_t first, last;
         double reach2;
     };
-    // A range and where its box stands.
+    // A range of clusters and the index of its box.
     struct Range {
         std::size_t node, begin, end;
 

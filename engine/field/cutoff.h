@@ -1,4 +1,4 @@
-// How the energies of pairs end at a cutoff: what every sum over pairs of the force field can do.
+// The cutoff functions that every pair sum supports.
 #pragma once
 
 namespace palpa {
@@ -8,7 +8,7 @@ namespace palpa {
 // 1 before. Sources: B. R. Brooks et al., J. Comput. Chem. 4, 187 (1983); P. J. Steinbach, B. R.
 // Brooks, J. Comput. Chem. 15, 667 (1994). CHARMM's keywords are given in capitals.
 enum class ElectrostaticCutoff {
-    None,         // no end
+    None,         // no cutoff
     Switch,       // SWITCH: U S(r)
     Shift,        // SHIFT: U (1 - (r/c)^2)^2
     ForceShift,   // FSHIFT: U (1 - r/c)^2, whose force is that of U less its value at c. Of a
@@ -17,7 +17,7 @@ enum class ElectrostaticCutoff {
     CubicShift,   // U (1 - (r/c)^2)^3: energy, force and stiffness go to 0 at c. Not CHARMM's
 };
 enum class VanDerWaalsCutoff {
-    None,          // no end
+    None,          // no cutoff
     Switch,        // VSWITCH: U S(r)
     ForceSwitch,   // VFSWITCH: with U = A r^-12 - B r^-6, from m on
                    // A k12 (r^-6 - c^-6)^2 - B k6 (r^-3 - c^-3)^2, k12 = c^6/(c^6 - m^6),
@@ -28,7 +28,7 @@ enum class VanDerWaalsCutoff {
 
 // How the solvation of a pair (charmm/solvation.h) ends.
 enum class SolvationEnd {
-    None,    // there is no solvation
+    None,    // no solvation
     Sharp,   // at 9 Å, as EEF1 is published and in CHARMM, whatever other cutoffs are
     Smooth,  // times 1 - t^3 (10 - 15 t + 6 t^2) from 8.5 to 9.5 Å, t = (r - 8.5 Å)/1 Å
 };

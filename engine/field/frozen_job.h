@@ -1,4 +1,4 @@
-// What field/frozen_field.cpp asks of the part of it that is compiled for each kind of processor.
+// The part of field/frozen_field.cpp that is compiled for each instruction set.
 #pragma once
 #include "field/frozen_field.h"
 

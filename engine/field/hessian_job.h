@@ -1,4 +1,4 @@
-// The part of field/body_hessian.h that is compiled for each kind of processor.
+// The part of field/body_hessian.h that is compiled for each instruction set.
 #pragma once
 #include "field/body_hessian.h"
 
@@ -20,7 +20,7 @@ struct HessianJob {
 // blocks; both about the lane's own point, which is written too.
 void run_hessian_panel(const HessianJob& job, HessianBlock& rows) noexcept;
 
-// Takes that along the rows up the tree.
+// Carries these sums of the rows up the tree.
 void carry_rows(const HessianPlan& plan, std::size_t panel, HessianSums& sums) noexcept;
 
 }  // namespace palpa

@@ -1,5 +1,5 @@
-// Which atoms of a cluster are near which of another's: what lists of clusters ask most, by code
-// that is compiled for each kind of processor, with the same answer on all.
+// Finds which atoms of a cluster are near which atoms of another, the most frequent question of a
+// neighbour list. Compiled for each instruction set, with the same result on all.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -9,7 +9,7 @@ namespace palpa {
 
 inline constexpr std::size_t cluster_size = 8;
 
-// A cluster's atoms by coordinate, Å; where there is none, NaN: nothing is near.
+// Coordinates of a cluster's atoms, Å; NaN for empty places, which are near nothing.
 struct alignas(64) ClusterPlaces {
     std::array<double, cluster_size> x, y, z;
 };
@@ -18,7 +18,7 @@ struct alignas(64) ClusterPlaces {
 std::uint32_t find_near_rows(const ClusterPlaces& a, const ClusterPlaces& b,
                              double reach2) noexcept;
 
-// The same of single pairs: bit 8 r + c is that of row r and atom c of `b`.
+// The same for single pairs: bit 8 r + c stands for row r and atom c of `b`.
 std::uint64_t find_near_pairs(const ClusterPlaces& a, const ClusterPlaces& b,
                               double reach2) noexcept;
 

@@ -1,5 +1,5 @@
-// What one thread does of a sum over a list of clusters (field/pair_kernel.h), by code that is
-// compiled for each kind of processor.
+// The work of one thread in a sum over a cluster list (field/pair_kernel.h), compiled for each
+// instruction set.
 #pragma once
 #include "field/pair_kernel.h"
 

@@ -1,6 +1,5 @@
-// Lennard-Jones and Coulomb over a list of clusters in single precision, as wide as the processor
-// at hand can: what is near the speed of light for a force field. Its reference implementation, in
-// double, is forces/nonbonded.h.
+// The single-precision kernel for Lennard-Jones and Coulomb over a cluster list, with the widest
+// vectors of the processor. Its reference implementation in double is forces/nonbonded.h.
 #pragma once
 #include "field/cluster_list.h"
 #include "field/cutoff.h"
@@ -15,7 +14,7 @@
 
 namespace palpa {
 
-// What all pairs have in common.
+// Settings for all pairs.
 struct PairScheme {
     double coulomb = 0;  // C/eps, kcal Å/mol/e^2
     // A dielectric of eps r: E = C q q'/(eps r^2). Not with ForceShift or ForceSwitch.
@@ -54,11 +53,11 @@ struct alignas(64) ClusterForces {
     std::array<std::array<double, cluster_size>, 3> on;  // kcal/mol/Å
 };
 
-// What one call needs and the next one uses again; made by `build_pair_workspace` for one list.
+// Memory that calls reuse; made by `build_pair_workspace` for one list.
 struct PairWorkspace {
     Vec3 origin = Vec3::Zero();
-    std::vector<ClusterAtoms> atoms;                 // of the list, its empty cluster last
-    std::vector<std::vector<ClusterForces>> forces;  // of each thread
+    std::vector<ClusterAtoms> atoms;                 // clusters of the list, the empty one last
+    std::vector<std::vector<ClusterForces>> forces;  // one for each thread
 };
 
 PairWorkspace build_pair_workspace(const ClusterList& list, const PairParameters& parameters,

@@ -1,4 +1,4 @@
-// What the processor at hand can do at most, measured.
+// Measures the peak speed of the processor.
 #pragma once
 #include <cstddef>
 
@@ -6,7 +6,7 @@ namespace palpa {
 
 struct PeakRun {
     double operations = 0;  // floating-point; a product and a sum are two
-    float result = 0;       // means nothing
+    float result = 0;       // only keeps the compiler from removing the work
 };
 
 // Multiplies and adds in single precision and nothing else, out of registers, as wide as the kind

@@ -1,5 +1,5 @@
-// The kinds of processor that single-precision kernels are compiled for. At run time the best that
-// this one has is chosen; only tests and benches choose themselves.
+// The instruction sets for which the single-precision kernels are compiled. At run time the best
+// one of this processor is used; only tests and benches choose another.
 #pragma once
 #include <string>
 #include <string_view>
@@ -7,11 +7,12 @@
 
 namespace palpa {
 
-// Those that this processor can run, best first, by Highway's names: "AVX3" (that is AVX-512),
+// Instruction sets that this processor supports, best first, by Highway's names: "AVX3" (AVX-512),
 // "AVX2", "SSE4", "SCALAR".
 std::vector<std::string> list_processor_kinds();
 
-// Makes all later calls of kernels use one of the kinds listed. Not while another thread calls one.
+// Makes all later kernel calls use this instruction set of the list. Not while another thread calls
+// a kernel.
 void use_processor_kind(std::string_view kind);
 
 }  // namespace palpa

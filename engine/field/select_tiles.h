@@ -1,5 +1,5 @@
-// Of a list of clusters, what is needed for a while: pairs that are near now, between rigid bodies
-// alone, whose own pairs keep their distances.
+// Selects from a cluster list the tiles that are near now, only between different rigid bodies,
+// whose own pairs keep their distances.
 #pragma once
 #include "field/cluster_list.h"
 #include "math/vec.h"

@@ -1,5 +1,5 @@
-// What one thread does of a sum of solvation over a list of clusters (field/solvation_kernel.h), by
-// code that is compiled for each kind of processor.
+// The work of one thread in a solvation sum over a cluster list (field/solvation_kernel.h),
+// compiled for each instruction set.
 #pragma once
 #include "field/solvation_kernel.h"
 
@@ -14,7 +14,7 @@ struct SolvationJob {
     const SolvationCluster* atoms;
     ClusterForces* forces;
     std::size_t first, last;
-    double begin, end;  // of the switch, Å
+    double begin, end;  // range of the switching function, Å
 };
 
 struct SolvationJobSum {

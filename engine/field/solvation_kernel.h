@@ -1,5 +1,5 @@
-// EEF1's solvation over a list of clusters in single precision, as wide as the processor at hand
-// can. Its reference implementation, in double, is forces/solvation.h.
+// The single-precision kernel for EEF1's solvation energy over a cluster list, with the widest
+// vectors of the processor. Its reference implementation in double is forces/solvation.h.
 #pragma once
 #include "field/pair_kernel.h"
 #include "field/solvation_parameters.h"

@@ -1,4 +1,4 @@
-// The numbers of EEF1's solvation of a set of points.
+// EEF1's solvation parameters of a set of points.
 #pragma once
 #include <span>
 

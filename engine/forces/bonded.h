@@ -12,7 +12,7 @@ namespace palpa {
 // charmm/topology.h. Every term's forces sum up to no force and no torque, and stay finite wherever
 // the atoms are, as said at each.
 
-// Two atoms at one place have no direction to be pushed in: no force.
+// Two atoms at the same place have no direction of force: the force is 0.
 double add_bond_forces(std::span<const Bond> bonds, std::span<const Vec3> positions,
                        std::span<Vec3> forces) noexcept;
 double add_urey_bradley_forces(std::span<const UreyBradley> terms, std::span<const Vec3> positions,

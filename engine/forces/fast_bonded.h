@@ -1,5 +1,5 @@
-// The bonded terms of a topology many at a time, as fast as the processor at hand can; in double.
-// Its reference implementation is forces/bonded.h.
+// Fast bonded terms: many at a time with the widest vectors of the processor, in double. Its
+// reference implementation is forces/bonded.h.
 #pragma once
 #include "charmm/topology.h"
 #include "field/bonded_kernel.h"
@@ -20,7 +20,7 @@ struct TermBlocks {
     std::vector<Numbers> blocks;
 };
 
-// Of one topology, constant after building.
+// The bonded terms of one topology; constant after building.
 struct FastBonded {
     TermBlocks<2, SpringNumbers> bonds, urey_bradleys;
     TermBlocks<3, AngleNumbers> angles;

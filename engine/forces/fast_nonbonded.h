@@ -1,5 +1,5 @@
-// The non-bonded sum of a topology in single precision, as fast as the processor at hand can: the
-// pairs of forces/nonbonded.h by the kernel of field/pair_kernel.h.
+// The fast non-bonded sum of a topology in single precision: the pairs of forces/nonbonded.h by the
+// kernel of field/pair_kernel.h.
 #pragma once
 #include "charmm/topology.h"
 #include "field/pair_kernel.h"
@@ -16,7 +16,7 @@
 
 namespace palpa {
 
-// Of one topology, constant after building.
+// Atom data of one topology; constant after building.
 struct FastAtoms {
     std::vector<double> sqrt_epsilon, half_rmin;  // per atom, as in `PairParameters`
     // Pairs that the kernel leaves out: those that the topology excludes, then those whose numbers
@@ -45,7 +45,8 @@ FastAtoms build_fast_atoms(const Topology& topology);
 // solvation.
 bool has_fast_form(const NonbondedSettings& settings) noexcept;
 
-// The list at hand and the kernel's memory; the settings say whether it is one of all pairs.
+// The present neighbour list and the memory of the kernel; the settings decide whether it contains
+// all pairs.
 struct FastPairs {
     ClusterList list;
     PairWorkspace workspace;
@@ -56,7 +57,8 @@ struct FastPairs {
     std::vector<std::array<std::uint32_t, 2>> replaced;  // of these, those that are near now
     std::vector<Vec3> positions;                         // Å, when it was built
     std::size_t builds = 0, updates = 0;                 // of the list so far
-    // What is near now of a list that ends at a cutoff, where atoms move little from sum to sum.
+    // The tiles that are near now, of a list with a cutoff, for atoms that move little between
+    // sums.
     struct NearTiles {
         ClusterList tiles;
         PairWorkspace workspace;
@@ -80,9 +82,9 @@ NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAt
                                           std::span<Vec3> forces, PairResult result,
                                           const PairThreads& threads = {});
 
-// The same of the pairs of one list that is not outdated, with a workspace of its own, and of
-// others, which are summed in double; without solvation. Atoms that stand in neither are not looked
-// at. Nothing where single precision does not do; no forces are added then.
+// The same for the pairs of one valid list, with its own workspace, and for other pairs, which are
+// summed in double; without solvation. Atoms in neither are ignored. Returns nothing and adds no
+// forces if single precision is not sufficient.
 std::optional<NonbondedEnergy> add_tile_forces(const Topology& topology,
                                                const NonbondedSettings& settings,
                                                const ClusterList& list, PairWorkspace& workspace,
@@ -91,7 +93,7 @@ std::optional<NonbondedEnergy> add_tile_forces(const Topology& topology,
                                                std::span<Vec3> forces, PairResult result,
                                                const PairThreads& threads = {});
 
-// The very same pairs in double, with solvation where the settings have it, so that energies can be
+// The same pairs in double, with solvation if the settings have it, so that energies can be
 // compared with those of other positions.
 NonbondedEnergy add_pairs_in_double(const Topology& topology, const NonbondedSettings& settings,
                                     const ClusterList& list,

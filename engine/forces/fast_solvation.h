@@ -14,10 +14,11 @@
 
 namespace palpa {
 
-// Of one topology, constant after building; empty without solvation.
+// Solvation data of one topology; constant after building, empty without solvation.
 struct FastSolvationAtoms {
-    std::vector<std::uint32_t> atoms;  // that count, rising: what follows is by their places here
-    std::vector<std::uint32_t> number_of;  // of each atom its place, no_atom where it has none
+    std::vector<std::uint32_t>
+        atoms;  // atoms with solvation, ascending; what follows is indexed by position in this list
+    std::vector<std::uint32_t> number_of;  // for each atom its index in `atoms`, or no_atom
     std::vector<double> volume, strength, inverse_lambda, radius;  // as in `SolvationParameters`
     std::vector<std::array<std::uint32_t, 2>> left_out;
 
@@ -28,19 +29,19 @@ struct FastSolvationAtoms {
 
 FastSolvationAtoms build_fast_solvation_atoms(const Topology& topology);
 
-// Some tiles of pairs by the numbers of all atoms, with the kernel's memory for them.
+// Tiles of pairs by atom numbers, with the memory of the kernel.
 struct SolvationTiles {
     ClusterList tiles;
     SolvationWorkspace workspace;
 };
 
-// The list at hand, by the places of `FastSolvationAtoms`, and the kernel's memory.
+// The present neighbour list, by indices of `FastSolvationAtoms`, and the memory of the kernel.
 struct FastSolvationPairs {
     ClusterList list;
     SolvationWorkspace workspace;
     std::size_t builds = 0;
-    std::vector<Vec3> positions, forces;  // of the atoms that count, Å and kcal/mol/Å
-    // As in `FastPairs`.
+    std::vector<Vec3> positions, forces;  // for the atoms with solvation, Å and kcal/mol/Å
+    // See `FastPairs`.
     SolvationTiles near;
     std::vector<Vec3> selected, summed;
 };
@@ -53,7 +54,7 @@ double add_fast_solvation_forces(const Topology& topology, const FastSolvationAt
                                  FastSolvationPairs& pairs, std::span<Vec3> forces,
                                  std::size_t threads = 1);
 
-// The same of some tiles whose atoms have not moved too far.
+// The same for tiles that are still valid.
 double add_solvation_tiles(const Topology& topology, SolvationTiles& tiles,
                            std::span<const Vec3> positions, std::span<Vec3> forces,
                            std::size_t threads = 1);

@@ -1,4 +1,4 @@
-// The whole force field of a topology: energy term by term, and the force on every atom.
+// The complete force field of a topology: energy term by term, and the force on every atom.
 #pragma once
 #include "charmm/topology.h"
 #include "forces/fast_bonded.h"
@@ -20,9 +20,9 @@ struct EnergyTerms {
     double dihedral = 0;
     double improper = 0;
     double cmap = 0;
-    double lj = 0;         // plain pairs
+    double lj = 0;         // pairs other than 1-4
     double lj14 = 0;       // pairs three bonds apart
-    double coulomb = 0;    // plain pairs
+    double coulomb = 0;    // pairs other than 1-4
     double coulomb14 = 0;  // pairs three bonds apart
     double solvation = 0;  // pairs of both kinds, and what each atom has alone
 
@@ -30,7 +30,7 @@ struct EnergyTerms {
         return bond + angle + urey_bradley + dihedral + improper + cmap + lj + lj14 + coulomb +
                coulomb14 + solvation;
     }
-    double magnitude() const noexcept;  // the sum of terms without their signs
+    double magnitude() const noexcept;  // sum of the absolute terms
     EnergyTerms& operator+=(const EnergyTerms& other) noexcept;
     EnergyTerms& operator-=(const EnergyTerms& other) noexcept;
 };
@@ -47,7 +47,7 @@ EnergyTerms add_forces(const Topology& topology, const NonbondedSettings& settin
                        const PairList& list, std::span<const Vec3> positions,
                        std::span<Vec3> forces, std::size_t threads = 1);
 
-// What the fast way needs of a topology; constant after building.
+// Data of the fast force field of a topology; constant after building.
 struct FastForceField {
     FastAtoms atoms;
     FastBonded bonded;
@@ -61,8 +61,8 @@ EnergyTerms add_fast_terms(const Topology& topology, const Topology& terms,
                            const FastBonded& bonded, const NonbondedSettings& settings,
                            std::span<const Vec3> positions, std::span<Vec3> forces) noexcept;
 
-// The same as fast as the processor at hand can: pairs as `add_fast_nonbonded_forces` says, the
-// other terms in double. Without the energies of plain pairs unless asked for.
+// The fast version: pairs as in `add_fast_nonbonded_forces`, other terms in double. Energies of
+// non-1-4 pairs only on request.
 EnergyTerms add_fast_forces(const Topology& topology, const FastForceField& fast,
                             const NonbondedSettings& settings, double skin,
                             std::span<const Vec3> positions, FastPairs& pairs,

@@ -1,5 +1,5 @@
-// The part of a force field that changes when atoms move in rigid groups: the terms and pairs that
-// reach from one group into another.
+// The part of a force field that changes when atoms move in rigid groups: terms and pairs between
+// different groups.
 #pragma once
 #include "forces/force_field.h"
 
@@ -13,19 +13,20 @@ namespace palpa {
 // Of one topology, one list of neighbours and one choice of groups; constant but for the kernel's
 // memory. Some terms and pairs within a group are in it too, always the same.
 struct GroupForces {
-    // The bonded terms and pairs three bonds apart; without charges, types and exclusions.
+    // Bonded terms and 1-4 pairs; without charges, types and exclusions.
     Topology terms;
     FastBonded bonded;  // of terms
 
-    ClusterList tiles;  // plain pairs, by the kernel
+    ClusterList tiles;  // pairs for the kernel, without 1-4 pairs
     PairWorkspace workspace;
-    SolvationTiles solvation;  // by its kernel, with pairs three bonds apart; where tiles are used
-    std::vector<std::array<std::uint32_t, 2>> pairs;  // plain pairs in double
-    bool is_fast = false;                             // by kernels, not all in double
+    SolvationTiles solvation;  // for the solvation kernel, with 1-4 pairs; if tiles are used
+    std::vector<std::array<std::uint32_t, 2>> pairs;  // pairs in double, without 1-4 pairs
+    bool is_fast = false;                             // computed by kernels, not all in double
 
-    bool was_in_double = false;  // the last sum, for pairs too close for the kernel
+    bool was_in_double =
+        false;  // the last sum was in double, because pairs were too close for the kernel
 
-    std::vector<std::uint32_t> atoms;  // on which anything acts, rising
+    std::vector<std::uint32_t> atoms;  // atoms with forces, ascending
 };
 
 // Pairs by the kernel, of those that are listed; `groups` has a number for each atom. Where the
@@ -34,12 +35,12 @@ GroupForces build_fast_group_forces(const Topology& topology, const FastAtoms& a
                                     const FastPairs& pairs, std::span<const std::uint32_t> groups,
                                     std::span<const Vec3> positions, double skin);
 
-// All pairs in double: those of `list`, or without one all that the topology does not exclude.
+// All pairs in double: those of `list`, or, without a list, all that are not excluded.
 GroupForces build_group_forces(const Topology& topology, const PairList* list,
                                std::span<const std::uint32_t> groups);
 
-// Adds forces (kcal/mol/Å) and returns energies. Only entries of `GroupForces::atoms` are read and
-// written. Pairs that are too close for the kernel are summed in double.
+// Adds forces (kcal/mol/Å) and returns energies (kcal/mol). Reads and writes only entries of
+// `GroupForces::atoms`. Pairs that are too close for the kernel are summed in double.
 EnergyTerms add_group_forces(const Topology& topology, const NonbondedSettings& settings,
                              GroupForces& group_forces, std::span<const Vec3> positions,
                              std::span<Vec3> forces);

@@ -14,16 +14,17 @@
 namespace palpa {
 
 struct MinimiseSettings {
-    // Pairs are summed over a list where both energies end at a cutoff, over all otherwise.
+    // With a cutoff of both energies, pairs are summed over a neighbour list, otherwise over all
+    // pairs.
     NonbondedSettings nonbonded;
-    double skin = 2;               // of the list, Å
-    std::size_t steps = 500;       // at most
-    double force_tolerance = 0.1;  // rms over the components of free atoms, kcal/mol/Å: the end
-    double largest_step = 0.2;     // of any atom in one step, Å
-    std::size_t threads = 1;       // of sums over a list
+    double skin = 2;               // Verlet buffer of the list, Å
+    std::size_t steps = 500;       // largest number of steps
+    double force_tolerance = 0.1;  // the end: rms over the components of free atoms, kcal/mol/Å
+    double largest_step = 0.2;     // largest move of an atom in one step, Å
+    std::size_t threads = 1;       // threads for sums over a list
 };
 
-// What holds atoms back. Each is empty or has one entry per atom.
+// Harmonic restraints and fixed atoms. Each span is empty or has one entry per atom.
 struct Restraints {
     std::span<const double> k;         // kcal/mol/Å^2, E = k |x - reference|^2; 0 for none
     std::span<const Vec3> references;  // Å, where k is given
@@ -32,17 +33,17 @@ struct Restraints {
 
 enum class MinimiseEnd {
     Converged,  // the force tolerance is reached
-    Steps,      // there were no more steps
-    Stuck,      // no step along the forces lowers the energy by more than rounding
+    Steps,      // the largest number of steps was reached
+    Stuck,      // the line search finds no lower energy beyond rounding
 };
 
 struct MinimiseReport {
-    // With a list, without the pairs of two fixed atoms.
+    // With a list: without pairs of two fixed atoms.
     EnergyTerms before, after;
     double restraint_before = 0, restraint_after = 0;  // kcal/mol
-    std::size_t steps = 0;                             // taken
-    std::size_t evaluations = 0;                       // of the energy
-    std::size_t lists = 0;                             // built
+    std::size_t steps = 0;                             // number of steps
+    std::size_t evaluations = 0;                       // function evaluations
+    std::size_t lists = 0;                             // neighbour lists built
     double rms_force = 0;      // at the end, over the components of free atoms, kcal/mol/Å
     double largest_force = 0;  // at the end, on a free atom, kcal/mol/Å
     MinimiseEnd end = MinimiseEnd::Steps;

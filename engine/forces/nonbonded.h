@@ -1,6 +1,5 @@
-// Lennard-Jones, Coulomb and solvation of a topology's pairs in double: over all pairs, the
-// reference that faster ways of summing are held against, and over a list of neighbours, for large
-// systems with a cutoff.
+// Non-bonded energies (Lennard-Jones, Coulomb, solvation) of a topology's pairs in double: over all
+// pairs, the reference implementation, and over a neighbour list for large systems with a cutoff.
 #pragma once
 #include "charmm/topology.h"
 #include "core/units.h"
@@ -29,7 +28,7 @@ struct NonbondedSettings {
     double switch_from = 10;  // m, Å, CTONNB
     double cutoff = 12;       // c, Å, CTOFNB
 
-    // Anything but None needs the topology's numbers.
+    // Except for None the topology must have solvation parameters.
     SolvationEnd solvation = SolvationEnd::None;
 };
 
@@ -38,7 +37,7 @@ struct NonbondedSettings {
 // with other ends of electrostatics, whole groups at a time, and of Lennard-Jones.
 NonbondedSettings eef1_settings(SolvationEnd solvation = SolvationEnd::Smooth) noexcept;
 
-// The same but for solvation, which they have none of then.
+// The same settings without solvation.
 NonbondedSettings without_solvation(NonbondedSettings settings) noexcept;
 
 // The law of settings for sums between sets of points: with eef1_settings() its smooth ends,
@@ -47,20 +46,20 @@ NonbondedSettings without_solvation(NonbondedSettings settings) noexcept;
 std::optional<PairRule> find_field_rule(const NonbondedSettings& settings,
                                         std::span<const ReplacedPair> replaced = {}) noexcept;
 
-// What makes settings unusable, as a sentence for a message; none where they are sound.
+// What is wrong with the settings, as a sentence for a message; empty if they are valid.
 std::optional<std::string_view> find_problem(const NonbondedSettings& settings) noexcept;
 
-// Whether electrostatics and Lennard-Jones end at the cutoff: what a list of neighbours needs.
+// Whether both electrostatics and Lennard-Jones have a cutoff, which a neighbour list requires.
 bool has_end(const NonbondedSettings& settings) noexcept;
 
-// From where on no pair acts, Å: the cutoff, or where solvation ends if that is farther. Infinite
-// without an end.
+// Distance beyond which no pair interacts, Å: the cutoff, or that of solvation if it is larger.
+// Infinite without a cutoff.
 double find_reach(const NonbondedSettings& settings) noexcept;
 
 struct NonbondedEnergy {
     double van_der_waals = 0;  // kcal/mol
     double electrostatic = 0;  // kcal/mol
-    double solvation = 0;      // kcal/mol, of the pairs: without what atoms have alone
+    double solvation = 0;      // kcal/mol, pairs only, without the atoms' own part
 
     double sum() const noexcept { return van_der_waals + electrostatic + solvation; }
 };
@@ -70,7 +69,7 @@ struct NonbondedEnergy {
 // `pair_core_radius` (field/pair_field.h) are continued as a parabola from there, so that atoms at
 // one place give a finite energy and no force.
 
-// Every pair that the topology does not exclude; with a cutoff, every one is still looked at.
+// All pairs that are not excluded; with a cutoff too, every pair is visited.
 NonbondedEnergy add_nonbonded_forces(const Topology& topology, const NonbondedSettings& settings,
                                      std::span<const Vec3> positions,
                                      std::span<Vec3> forces) noexcept;
@@ -87,18 +86,18 @@ NonbondedEnergy add_nonbonded_forces(const Topology& topology, const NonbondedSe
                                      std::span<const Vec3> positions,
                                      std::span<Vec3> forces) noexcept;
 
-// Only the pairs given, by the numbers of plain pairs.
+// Only these pairs, with non-1-4 parameters.
 NonbondedEnergy add_pair_forces(const Topology& topology, const NonbondedSettings& settings,
                                 std::span<const std::array<std::uint32_t, 2>> pairs,
                                 std::span<const Vec3> positions, std::span<Vec3> forces) noexcept;
 
-// The pairs three bonds apart, with Lennard-Jones numbers of their own, ended by the same cutoff,
-// and solvation in full.
+// The 1-4 pairs with their own Lennard-Jones parameters and the same cutoff, and with full
+// solvation.
 NonbondedEnergy add_nonbonded14_forces(const Topology& topology, const NonbondedSettings& settings,
                                        std::span<const Vec3> positions,
                                        std::span<Vec3> forces) noexcept;
 
-// Only some of those.
+// Only some of the 1-4 pairs.
 NonbondedEnergy add_pair14_forces(const Topology& topology, const NonbondedSettings& settings,
                                   std::span<const std::array<std::uint32_t, 2>> pairs,
                                   std::span<const Vec3> positions, std::span<Vec3> forces) noexcept;

@@ -22,7 +22,7 @@ struct PairHessian {
     }
 };
 
-// The second derivatives of what forces/pair_law.h sums, for sound settings.
+// Second derivatives of the functions of forces/pair_law.h, for valid settings.
 class PairHessianLaw {
 public:
     explicit PairHessianLaw(const NonbondedSettings& settings) noexcept;
@@ -34,7 +34,7 @@ public:
     double reach2() const noexcept { return reach2_; }  // Å^2, from where on pairs have nothing
 
 private:
-    PairHessian electrostatic(double r2) const noexcept;  // of unit charges
+    PairHessian electrostatic(double r2) const noexcept;  // for unit charges
     PairHessian van_der_waals(double r2, const LennardJonesPair& pair) const noexcept;
 
     ElectrostaticCutoff electrostatics_;
@@ -59,7 +59,7 @@ public:
         return evaluate(topology_.lennard_jones14, coulomb14_, i, j, r2);
     }
 
-    // Of solvation alone.
+    // Solvation only.
     PairHessian solvation(std::uint32_t i, std::uint32_t j, double r2) const noexcept;
 
     double reach2() const noexcept { return reach2_; }  // Å^2, from where on pairs have nothing

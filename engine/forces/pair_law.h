@@ -1,6 +1,5 @@
-// Energy and force of one pair of atoms, without or with a cutoff: what every sum over pairs of the
-// force field is made of. Without branches or roots, so that compilers can put pairs beside each
-// other.
+// Energy and force of one pair of atoms, with or without a cutoff: the function inside every pair
+// sum. Without branches or roots, so that compilers can vectorise it.
 #pragma once
 #include "charmm/topology.h"
 #include "forces/nonbonded.h"
@@ -34,7 +33,7 @@ template <ElectrostaticCutoff ElectrostaticEnd, VanDerWaalsCutoff VanDerWaalsEnd
           bool DistanceDielectric>
 class PairLaw {
 public:
-    // Whether pairs have nothing from the cutoff on.
+    // Whether the energy is 0 beyond the cutoff.
     static constexpr bool ends =
         ElectrostaticEnd != ElectrostaticCutoff::None && VanDerWaalsEnd != VanDerWaalsCutoff::None;
 
@@ -60,7 +59,7 @@ public:
     double reach2;  // Å^2, from where on pairs have nothing
 
 private:
-    // Of unit charges, without a cutoff.
+    // For unit charges, without a cutoff.
     static Radial bare(double inverse_r) noexcept {
         const double inverse_r2 = inverse_r * inverse_r;
         if constexpr (DistanceDielectric) return {inverse_r2, 2.0 * inverse_r2 * inverse_r2};
@@ -167,7 +166,7 @@ private:
     double inverse_range_;    // 1/(c^2 - m^2), Å^-2
 };
 
-// `sum` called with the law that the settings ask for.
+// Calls `sum` with the law for these settings.
 template <ElectrostaticCutoff ElectrostaticEnd, VanDerWaalsCutoff VanDerWaalsEnd, class Sum>
 auto with_dielectric(const NonbondedSettings& settings, const Sum& sum) noexcept {
     if (settings.distance_dielectric)

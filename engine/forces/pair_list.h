@@ -1,4 +1,4 @@
-// A list of neighbours: the pairs of atoms near enough to act on each other, found once for many
+// The Verlet neighbour list: pairs of atoms that are near enough to interact, found once for many
 // steps (L. Verlet, Phys. Rev. 159, 98 (1967)).
 #pragma once
 #include "charmm/topology.h"
@@ -17,9 +17,10 @@ namespace palpa {
 struct PairList {
     double cutoff = 0;                 // Å
     double skin = 0;                   // Å
-    std::vector<Vec3> positions;       // when the list was built
-    std::vector<std::uint32_t> atoms;  // whose row it is
-    std::vector<std::size_t> first;    // of `neighbours`; one entry more than there are rows
+    std::vector<Vec3> positions;       // at the build of the list
+    std::vector<std::uint32_t> atoms;  // i-atom of each row
+    std::vector<std::size_t>
+        first;  // start of each row in `neighbours`; one entry more than there are rows
     std::vector<std::uint32_t> neighbours;
 
     std::span<const std::uint32_t> neighbours_of(std::size_t row) const noexcept {
@@ -35,8 +36,8 @@ PairList build_pair_list(const Exclusions& exclusions, double cutoff, double ski
                          std::span<const Vec3> positions,
                          std::span<const std::uint8_t> is_fixed = {}, PairList storage = {});
 
-// Whether a pair that is not in the list may have come nearer than the cutoff: an atom has moved
-// more than half the skin.
+// Whether a pair outside of the list may be nearer than the cutoff: an atom has moved more than
+// half the buffer.
 bool is_outdated(const PairList& list, std::span<const Vec3> positions) noexcept;
 
 // Rows [begin, end) of a list.
@@ -44,7 +45,7 @@ struct PairRows {
     std::size_t begin, end;
 };
 
-// The rows from the share `from` (0 to 1) of all pairs to the share `to`.
+// The rows between the shares `from` and `to` (0 to 1) of all pairs.
 PairRows find_rows(const PairList& list, double from, double to) noexcept;
 
 }  // namespace palpa

@@ -16,26 +16,26 @@
 
 namespace palpa {
 
-// From where on pairs have none, Å; 0 for None.
+// Distance beyond which pairs have no solvation, Å; 0 for None.
 double find_solvation_reach(SolvationEnd end) noexcept;
 
-// The sum of dG_ref, kcal/mol: what the atoms have where all are alone. 0 for None.
+// The sum of dG_ref, the energy of separated atoms, kcal/mol. 0 for None.
 double find_lone_solvation(const Topology& topology, SolvationEnd end) noexcept;
 
 // All below add forces (kcal/mol/Å, one entry per atom) and return the pairs' energy (kcal/mol).
 // The topology must have the numbers. Within `pair_core_radius` (field/pair_field.h) a pair is
 // continued as a parabola, so that atoms at one place give a finite energy and no force.
 
-// Every plain pair.
+// All pairs that are not excluded, without 1-4 pairs.
 double add_solvation_forces(const Topology& topology, SolvationEnd end,
                             std::span<const Vec3> positions, std::span<Vec3> forces) noexcept;
 
-// The plain pairs of some rows of a list that is not outdated and goes as far at least.
+// The pairs of some rows of a valid list with at least this range.
 double add_solvation_forces(const Topology& topology, SolvationEnd end, const PairList& list,
                             PairRows rows, std::span<const Vec3> positions,
                             std::span<Vec3> forces) noexcept;
 
-// Only the pairs given.
+// Only these pairs.
 double add_solvation_forces(const Topology& topology, SolvationEnd end,
                             std::span<const std::array<std::uint32_t, 2>> pairs,
                             std::span<const Vec3> positions, std::span<Vec3> forces) noexcept;
@@ -47,8 +47,8 @@ enum class SolvationExponential {
     Table,
 };
 
-// Of each atom, kcal/mol: dG_ref less what the others take, pairs three bonds apart included. Their
-// sum is the whole energy.
+// For each atom, kcal/mol: dG_ref minus what its neighbours take, 1-4 pairs included. The sum is
+// the total energy.
 std::vector<double> find_solvation_energies(
     const Topology& topology, SolvationEnd end, std::span<const Vec3> positions,
     SolvationExponential exponential = SolvationExponential::Exact);

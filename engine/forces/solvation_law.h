@@ -1,4 +1,4 @@
-// EEF1's law of a pair (field/solvation_law.h) with the numbers of a topology.
+// EEF1's pair law (field/solvation_law.h) with the parameters of a topology.
 #pragma once
 #include "charmm/solvation.h"
 #include "field/solvation_law.h"

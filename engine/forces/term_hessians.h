@@ -13,14 +13,14 @@
 
 namespace palpa {
 
-// Of an energy over some vectors: its gradient (kcal/mol/Å) and Hessian (kcal/mol/Å^2).
+// Gradient (kcal/mol/Å) and Hessian (kcal/mol/Å^2) of an energy with respect to some vectors.
 template <int Vectors>
 struct TermHessian {
     Eigen::Matrix<double, 3 * Vectors, 1> gradient = decltype(gradient)::Zero();
     Eigen::Matrix<double, 3 * Vectors, 3 * Vectors> hessian = decltype(hessian)::Zero();
 };
 
-// What each vector has of each atom's place.
+// The contribution of each atom's position to each vector.
 template <std::size_t Vectors, std::size_t Atoms>
 using Shares = std::array<std::array<double, Atoms>, Vectors>;
 
@@ -28,10 +28,10 @@ inline constexpr Shares<1, 2> spring_shares{{{1, -1}}};
 inline constexpr Shares<2, 3> angle_shares{{{1, -1, 0}, {0, -1, 1}}};
 inline constexpr Shares<3, 4> torsion_shares{{{1, -1, 0, 0}, {0, 1, -1, 0}, {0, 0, -1, 1}}};
 
-// k (|d| - r0)^2. Two atoms at one place: nothing, as forces have it.
+// k (|d| - r0)^2. Zero for two atoms at the same place, as for forces.
 TermHessian<1> find_spring_hessian(double k, double r0, const Vec3& d) noexcept;
 
-// Three atoms in line: nothing, as forces have it.
+// Zero for three collinear atoms, as for forces.
 TermHessian<2> find_angle_hessian(const Angle& angle, const Vec3& u, const Vec3& v) noexcept;
 
 // A dihedral angle and its derivatives; of_energy gives those of an energy over the angle from the

@@ -1,4 +1,4 @@
-// Binary files: numbers in either byte order, bytes at any place, a file that grows.
+// Reads and writes binary files: numbers in either byte order, bytes at any offset.
 #pragma once
 #include <bit>
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace palpa {
 
-// The number whose sizeof(T) bytes stand in this order at `bytes`.
+// The number in the sizeof(T) bytes at `bytes`, in this byte order.
 template <class T>
 T number_from(const char* bytes, std::endian order) noexcept {
     static_assert(sizeof(T) == 4 || sizeof(T) == 8);
@@ -27,7 +27,7 @@ T number_from(const char* bytes, std::endian order) noexcept {
     return std::bit_cast<T>(bits);
 }
 
-// And back, behind what `text` holds.
+// Appends the bytes of a number to `text`.
 template <class T>
 void append_number(std::string& text, T value, std::endian order) {
     static_assert(sizeof(T) == 4 || sizeof(T) == 8);
@@ -39,19 +39,19 @@ void append_number(std::string& text, T value, std::endian order) {
     }
 }
 
-// Bytes of a file, or of memory, at any place. For one thread.
+// Reads bytes of a file or of memory at any offset. For one thread.
 class ByteSource {
 public:
-    // Throws LoadError if the file is missing, no regular file, or cannot be read.
+    // Throws LoadError if the file is missing, not a regular file, or unreadable.
     explicit ByteSource(const std::filesystem::path& path);
     // `name` stands for the file in messages.
     ByteSource(std::string bytes, std::string name);
 
     const std::string& name() const noexcept { return name_; }
-    // In bytes, as it was when the file was opened.
+    // Size in bytes when the file was opened.
     std::uint64_t size() const noexcept { return size_; }
 
-    // Fills `into`. Throws LoadError where the file has no such bytes (any more).
+    // Fills `into`. Throws LoadError if the file does not have these bytes (any more).
     void read(std::uint64_t offset, std::span<char> into);
 
 private:
@@ -60,14 +60,13 @@ private:
     std::uint64_t size_ = 0;
 };
 
-// A file that was not there before. It grows, and what is written can be written over. All throw
-// LoadError.
+// A new file that grows and can be overwritten. All functions throw LoadError.
 class GrowingFile {
 public:
     explicit GrowingFile(const std::filesystem::path& path);
 
     const std::string& name() const noexcept { return name_; }
-    // Each hands its bytes to the system before it returns.
+    // Both pass the bytes to the system before they return.
     void append(std::string_view bytes);
     void replace(std::uint64_t offset, std::string_view bytes);
     void close();

@@ -1,4 +1,4 @@
-// The grammar of CIF files, gemmi's: what a text holds, piece by piece.
+// Parses CIF text by gemmi's grammar, token by token.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -12,10 +12,10 @@ struct CifToken {
     std::size_t line = 0, column = 0;
 };
 
-// What a value says: without its quotes, empty for '?' and '.'.
+// The value without its quotes; empty for '?' and '.'.
 std::string_view unquoted(std::string_view value) noexcept;
 
-// Called in the order of the file.
+// Receives the tokens in the order of the file.
 class CifListener {
 public:
     virtual void begin_loop() = 0;
@@ -30,7 +30,7 @@ protected:
     ~CifListener() = default;
 };
 
-// Throws LoadError with line and column where the text is no CIF; what the listener throws passes
+// Throws LoadError with line and column if the text is not CIF; exceptions of the listener pass
 // through.
 void parse_cif(std::string_view text, const std::string& file, CifListener& listener);
 

@@ -1,4 +1,4 @@
-// DCD trajectories of CHARMM, NAMD and X-PLOR, in and out.
+// Reads and writes DCD trajectories of CHARMM, NAMD and X-PLOR.
 #pragma once
 #include "formats/bytes.h"
 #include "formats/trajectory.h"
@@ -28,10 +28,10 @@ std::unique_ptr<Trajectory> open_dcd(ByteSource source);
 
 struct DcdOptions {
     std::string title;               // printable ASCII; cut at 80 letters a line
-    bool has_box = false;            // every frame has one, or none has
-    std::int32_t first_step = 0;     // of the first frame
-    std::int32_t steps_between = 1;  // frames
-    double timestep_ps = 0;          // of a step; 0: unknown
+    bool has_box = false;            // whether every frame has a box
+    std::int32_t first_step = 0;     // step of the first frame
+    std::int32_t steps_between = 1;  // steps between two frames
+    double timestep_ps = 0;          // time step; 0: unknown
 };
 
 // Writes the CHARMM form in little-endian order, as NAMD does, with the cell as lengths and
@@ -46,7 +46,7 @@ public:
     void add_frame(std::span<const Vec3> positions, const std::optional<Mat3>& box = {});
     std::size_t frame_count() const noexcept { return frames_; }
 
-    // Tells what the system could not write.
+    // Throws if the system could not write everything.
     void close() { file_.close(); }
 
 private:

@@ -1,4 +1,4 @@
-// GRO structure files of GROMACS, in and out.
+// Reads and writes GRO structure files of GROMACS.
 #pragma once
 #include "molecule/atoms.h"
 
@@ -9,7 +9,7 @@
 
 namespace palpa {
 
-// Residues that are water, by the names of CHARMM, GROMACS and others.
+// Whether a residue is water, by the names of CHARMM, GROMACS and others.
 bool is_water_residue(std::string_view residue) noexcept;
 
 // A file has one frame; velocities and the box are left out. Coordinates may have more digits, as

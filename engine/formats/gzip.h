@@ -1,4 +1,4 @@
-// Text files as the archive serves them: plain, or compressed by gzip.
+// Reads text files, plain or compressed by gzip.
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace palpa {
 
-// The most that a compressed file may hold; the largest entries of the archive have a third of it.
+// Largest unpacked size; the largest entries of the Protein Data Bank have a third of it.
 inline constexpr std::size_t most_unpacked_bytes = std::size_t{1} << 28;
 
 // As read_text_file (core/files.h); what begins as gzip does is unpacked, whatever its name.

@@ -1,4 +1,4 @@
-// Index files of GROMACS (.ndx): named groups of atoms.
+// Reads index files of GROMACS (.ndx): named groups of atoms.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace palpa {
 struct IndexGroup {
     std::string name;
     std::vector<std::uint32_t> atoms;  // from 0, in the order of the file
-    std::size_t line = 0;              // of its name
+    std::size_t line = 0;              // line of its name
 };
 
 // Groups as "[ name ]", behind each its atoms, counted from 1; comments begin with ';'. Throws

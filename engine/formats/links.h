@@ -1,4 +1,4 @@
-// Bonds between residues as structure files state them: LINK, SSBOND, struct_conn.
+// Reads bonds between residues from structure files: LINK, SSBOND, struct_conn.
 #pragma once
 #include "formats/cif.h"
 #include "molecule/atoms.h"
@@ -11,8 +11,8 @@
 
 namespace palpa {
 
-// What a line that begins with LINK or SSBOND says; nothing where it does not parse, or names a
-// copy by symmetry. It is a hint: whoever takes it looks at the atoms.
+// The bond of a LINK or SSBOND line; nothing if it cannot be parsed, or names a symmetry copy. The
+// caller must check the atoms.
 std::optional<StructureLink> find_pdb_link(std::string_view line, std::size_t number);
 
 // Gathers the rows of _struct_conn that are covalent bonds, disulphides or bonds to metals. The
@@ -35,11 +35,11 @@ private:
     static std::optional<std::size_t> find_column(std::string_view tag);
     void add_row();
 
-    std::vector<std::optional<std::size_t>> columns_;  // of this loop
+    std::vector<std::optional<std::size_t>> columns_;  // columns of this loop
     bool is_table_ = false;
-    std::size_t filled_ = 0;  // values of the row so far
+    std::size_t filled_ = 0;  // number of values of the present row
     std::optional<std::size_t> column_;
-    bool has_single_row_ = false;  // of tags outside of loops
+    bool has_single_row_ = false;  // a single row of tags outside of loops
     std::array<CifToken, columns> row_{};
     std::vector<StructureLink> links_;
 };

@@ -31,18 +31,18 @@ public:
     void add_tag(const CifToken& tag) override;
     void add_value(const CifToken& value) override;
 
-    // To be called behind the last token. Refuses operators that the file does not have, and
-    // expressions that stand for more than 1,000.
+    // Call after the last token. Refuses operators that the file does not define, and expressions
+    // with more than 1,000 operators.
     void move_into(Structure& structure);
 
 private:
-    // One of the two tables, with the row that is being read.
+    // One of the two tables with its present row.
     struct Table {
         std::string_view category;                // "_pdbx_struct_oper_list."
-        std::span<const std::string_view> names;  // of its columns
+        std::span<const std::string_view> names;  // names of its columns
         std::vector<CifToken> row;
         std::vector<bool> given;
-        std::optional<std::size_t> loop;  // that it is, 0 outside of loops
+        std::optional<std::size_t> loop;  // number of its loop, 0 outside of loops
         std::size_t line = 0;
     };
     struct Generation {
@@ -63,18 +63,18 @@ private:
     const std::string& file_;
     std::array<Table, 2> tables_;
     std::size_t loop_ = 0;              // number of the loop, from 1
-    Table* table_ = nullptr;            // that this loop or tag belongs to
+    Table* table_ = nullptr;            // table of the present loop or tag
     std::vector<std::int8_t> columns_;  // of this loop
     std::size_t filled_ = 0;            // values of the row so far
-    CifToken last_;                     // its last value
-    std::int8_t column_ = -1;           // of the last tag outside of a loop
+    CifToken last_;                     // last value of the row
+    std::int8_t column_ = -1;           // column of the last tag outside of loops
 
     std::vector<Generation> generations_;
     std::vector<SymmetryOperator> operators_;
     std::map<std::string, std::uint32_t, std::less<>> operators_by_name_;
     std::vector<Assembly> assemblies_;
     std::map<std::string, std::size_t, std::less<>> assemblies_by_name_;
-    std::size_t listed_ = 0;  // operators in all expressions
+    std::size_t listed_ = 0;  // number of operators in all expressions
 };
 
 }  // namespace palpa

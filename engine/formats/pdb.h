@@ -32,7 +32,7 @@ Structure parse_pdb(std::string_view text, const std::string& file);
 // number or a coordinate does not fit its columns.
 std::string format_pdb(const Structure& structure, std::string_view title);
 
-// A PDB file has one column for a chain; longer names become letters that are free, in turn.
+// Replaces longer chain names by unused letters, because a PDB file has one column for them.
 Structure with_short_chains(Structure structure);
 
 }  // namespace palpa

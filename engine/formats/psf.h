@@ -1,4 +1,4 @@
-// Protein structure files (.psf) of CHARMM, X-PLOR and NAMD.
+// Reads and writes protein structure files (.psf) of CHARMM, X-PLOR and NAMD.
 #pragma once
 #include "molecule/connectivity.h"
 

@@ -21,10 +21,10 @@ class Remark350 {
 public:
     explicit Remark350(const std::string& file) : file_(file) {}
 
-    // A line that begins with "REMARK 350", and its number.
+    // Adds a line that begins with "REMARK 350", with its number.
     void add_line(std::string_view line, std::size_t number);
 
-    // To be called behind the last line.
+    // Call after the last line.
     void move_into(Structure& structure);
 
 private:
@@ -39,8 +39,8 @@ private:
     std::vector<SymmetryOperator> operators_;
     std::vector<Assembly> assemblies_;
     std::set<std::string> names_;
-    std::size_t part_line_ = 0;  // of the part that is open
-    std::size_t rows_ = 0;       // of the last operator
+    std::size_t part_line_ = 0;  // line of the open part
+    std::size_t rows_ = 0;       // number of rows of the last operator
 };
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// Structure files of every kind, recognised by their names.
+// Reads structure files of all formats, recognised by their names.
 #pragma once
 #include "molecule/atoms.h"
 

@@ -1,4 +1,4 @@
-// What the readers of PDB and mmCIF share: atoms checked one by one, and notes on all of them.
+// Shared by the readers of PDB and mmCIF: checks atoms one by one and gathers notes.
 #pragma once
 #include "molecule/atoms.h"
 
@@ -12,7 +12,7 @@ namespace palpa {
 // Gathers the atoms of one file. Every call throws LoadError with file and line.
 class StructureBuilder {
 public:
-    // `atoms`: how many to have room for.
+    // `atoms`: number of atoms to reserve memory for.
     StructureBuilder(std::string file, std::size_t atoms);
 
     // Guesses the element where the record has none. An atom that comes again (the same model,
@@ -23,13 +23,13 @@ public:
 
     static constexpr std::size_t most_repeated = 50;
 
-    // Left out beyond 100,000.
+    // Ignored beyond 100,000 links.
     void add_link(StructureLink link);
 
-    // What the file calls a residue, by and by: long names come on several lines.
+    // Adds a part of a residue's full name; long names come on several lines.
     void add_component_name(std::string_view residue, std::string_view name);
 
-    // A chain ends behind the atoms so far.
+    // Ends a chain after the atoms so far.
     void end_chain();
 
     void add_note(std::string note);
@@ -45,7 +45,7 @@ private:
                    std::size_t first);
 
     Structure structure_;
-    std::unordered_map<std::string, std::size_t> atoms_;  // their indices
+    std::unordered_map<std::string, std::size_t> atoms_;  // indices of the atoms
     std::size_t repeated_ = 0;
 };
 

@@ -16,11 +16,11 @@ namespace palpa {
 
 struct TrajectoryFrame {
     std::vector<Vec3> positions;       // Å, one an atom
-    std::vector<Vec3> velocities;      // Å/ps; empty where the file has none
-    std::vector<Vec3> forces;          // kcal/mol/Å; empty where the file has none
+    std::vector<Vec3> velocities;      // Å/ps; empty if the file has none
+    std::vector<Vec3> forces;          // kcal/mol/Å; empty if the file has none
     std::optional<Mat3> box;           // its columns are the edges, Å (formats/box.h)
     std::optional<double> time_ps;     // ps
-    std::optional<std::int64_t> step;  // of the simulation
+    std::optional<std::int64_t> step;  // step of the simulation
 };
 
 // An open trajectory. Frames count from 0, in messages from 1. It holds an index of where frames
@@ -33,13 +33,13 @@ public:
     virtual ~Trajectory() = default;
 
     virtual std::size_t atom_count() const noexcept = 0;   // at least 1, in every frame
-    virtual std::size_t frame_count() const noexcept = 0;  // of whole frames, at least 1
+    virtual std::size_t frame_count() const noexcept = 0;  // number of complete frames, at least 1
 
-    // In any order. Replaces all of `into`, whose memory is used again. Throws LoadError with file
-    // and frame: a frame that is not there, a coordinate that is none, a damaged record.
+    // Reads a frame, in any order, into `into`, whose memory is reused. Throws LoadError with file
+    // and frame: a frame that does not exist, an invalid coordinate, a damaged record.
     virtual void read_frame(std::size_t frame, TrajectoryFrame& into) = 0;
 
-    // What a user should know, a sentence each: a file that ends within a frame, above all.
+    // Notes for the user, one sentence each, such as a file that ends within a frame.
     const std::vector<std::string>& notes() const noexcept { return notes_; }
 
 protected:
@@ -54,10 +54,10 @@ std::unique_ptr<Trajectory> open_trajectory(const std::filesystem::path& path);
 // For readers. "file: frame 3: what"
 [[noreturn]] void fail_frame(const std::string& file, std::size_t frame, const std::string& what);
 
-// Throws where the trajectory has no such frame.
+// Throws LoadError if the trajectory does not have this frame.
 void check_frame(const std::string& file, std::size_t frame, std::size_t count);
 
-// Throws where a position is not finite or beyond `farthest_coordinate` (formats/lines.h).
+// Throws LoadError if a position is not finite or beyond `farthest_coordinate` (formats/lines.h).
 void check_positions(const std::string& file, std::size_t frame, std::span<const Vec3> positions);
 
 // "ends within frame 3: the file may have been cut off"

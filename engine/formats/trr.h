@@ -1,4 +1,4 @@
-// TRR trajectories of GROMACS: positions, velocities and forces in full precision, in.
+// Reads TRR trajectories of GROMACS: positions, velocities and forces in full precision.
 #pragma once
 #include "formats/bytes.h"
 #include "formats/trajectory.h"

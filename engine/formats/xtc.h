@@ -1,4 +1,4 @@
-// XTC trajectories of GROMACS, in and out: coordinates rounded to a thousandth of a nanometre and
+// Reads and writes XTC trajectories of GROMACS: coordinates rounded, usually to 0.001 nm, and
 // packed.
 #pragma once
 #include "formats/bytes.h"
@@ -20,7 +20,7 @@ namespace palpa {
 // than 298 million atoms, packed coordinates that do not unpack.
 std::unique_ptr<Trajectory> open_xtc(ByteSource source);
 
-// All throw LoadError: a file that is there, one that cannot be written, positions that are none.
+// All functions throw LoadError: an existing file, one that cannot be written, invalid positions.
 class XtcWriter {
 public:
     // `precision`: steps per nanometre to which coordinates of more than 9 atoms are rounded.
@@ -32,7 +32,7 @@ public:
                    const std::optional<Mat3>& box = {});
     std::size_t frame_count() const noexcept { return frames_; }
 
-    // Tells what the system could not write.
+    // Throws if the system could not write everything.
     void close() { file_.close(); }
 
 private:

@@ -30,20 +30,20 @@ namespace palpa {
 using IntegerPlace = std::array<std::int32_t, 3>;
 
 struct PackedPlaces {
-    IntegerPlace least{}, greatest{};  // of all atoms, along each axis
-    std::int32_t small = 0;            // the first i
+    IntegerPlace least{}, greatest{};  // range of all atoms along each axis
+    std::int32_t small = 0;            // the initial i
     std::string bits;
 };
 
 // Of at least one atom. Nothing where a range exceeds 2^31 - 3, which other readers do not take.
 std::optional<PackedPlaces> pack_places(std::span<const IntegerPlace> places);
 
-// Fills `places`. Returns nothing, or what is wrong, half a sentence.
+// Fills `places`. Returns an empty text, or what is wrong, half a sentence.
 std::string unpack_places(const IntegerPlace& least, const IntegerPlace& greatest,
                           std::int32_t small, std::string_view bits,
                           std::span<IntegerPlace> places);
 
-// So many atoms these bits can hold at most.
+// The largest number of atoms that these bytes can contain.
 std::uint64_t most_packed_places(std::uint64_t bytes) noexcept;
 
 }  // namespace palpa

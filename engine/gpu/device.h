@@ -10,28 +10,27 @@
 
 namespace palpa {
 
-// A Vulkan call that failed, or no device to call: a sentence for the user.
+// A Vulkan call failed, or no device is usable: a sentence for the user.
 class GpuError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-// The device is gone, with all that was on it; a new GpuDevice may find it again.
+// The device was lost with all its objects; a new GpuDevice may find it again.
 class DeviceLost : public GpuError {
 public:
     using GpuError::GpuError;
 };
 
-// Throws GpuError (DeviceLost where that is the reason), naming the call, unless the result is
-// VK_SUCCESS.
+// Throws GpuError (or DeviceLost) with the name of the call unless the result is VK_SUCCESS.
 void check_vulkan(VkResult result, const char* call);
 
 struct GpuOptions {
     bool validation = false;     // with synchronisation validation; needs the Khronos layer
     bool force_staging = false;  // upload through staging buffers even where memory is shared
 
-    // For a window: what its surface needs of the instance, and how it is made. The device then
-    // can present to it.
+    // For a window: the instance extensions and the function that creates its surface. The device
+    // can then present to it.
     std::vector<const char*> instance_extensions{};
     std::function<VkSurfaceKHR(VkInstance)> create_surface{};
 };
@@ -39,8 +38,8 @@ struct GpuOptions {
 // Owns instance, device, queue and command pool. Used by one thread.
 class GpuDevice {
 public:
-    // Takes a discrete GPU before an integrated one before software. Throws GpuError with the
-    // reason each device was refused for.
+    // Prefers a discrete GPU, then an integrated one, then software. Throws GpuError with the
+    // reason for which each device was refused.
     explicit GpuDevice(const GpuOptions& options);
     GpuDevice(const GpuDevice&) = delete;
     GpuDevice& operator=(const GpuDevice&) = delete;
@@ -64,7 +63,7 @@ public:
     // Records commands, submits them, and waits until they are done.
     void submit(const std::function<void(VkCommandBuffer)>& record);
 
-    // What the validation layer had to say so far; empty without validation, or without mistakes.
+    // Messages of the validation layer so far; empty without validation, or without errors.
     const std::vector<std::string>& validation_messages() const noexcept { return *messages_; }
 
 private:
@@ -75,7 +74,7 @@ private:
     void create_device();
 
     GpuOptions options_;
-    std::unique_ptr<std::vector<std::string>> messages_;  // the layer keeps its address
+    std::unique_ptr<std::vector<std::string>> messages_;  // the layer stores its address
     VkInstance instance_ = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     VkSurfaceKHR surface_ = VK_NULL_HANDLE;

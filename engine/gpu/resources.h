@@ -1,4 +1,4 @@
-// Buffers and images with their memory; gone when they go out of scope.
+// Vulkan buffers and images with their memory, released at the end of their scope.
 #pragma once
 #include "gpu/device.h"
 
@@ -9,10 +9,10 @@
 
 namespace palpa {
 
-// Where a buffer is written and read from.
+// The kind of memory of a buffer.
 enum class BufferPlace {
-    Device,    // the device's own memory, filled through an UploadBuffer
-    Readback,  // the processor's, for what the device hands back
+    Device,    // device memory, filled through an UploadBuffer
+    Readback,  // host memory, for results of the device
 };
 
 class Buffer {
@@ -30,7 +30,7 @@ public:
     VkBuffer handle() const noexcept { return buffer_; }
     VkDeviceSize bytes() const noexcept { return bytes_; }
 
-    // The buffer's memory where the processor sees it, or an empty span.
+    // The buffer's memory if the processor can access it, else an empty span.
     std::span<std::byte> mapped() const noexcept {
         return {static_cast<std::byte*>(mapped_), mapped_ ? static_cast<std::size_t>(bytes_) : 0};
     }
@@ -53,8 +53,8 @@ public:
     UploadBuffer(const GpuDevice& device, VkBufferUsageFlags usage)
         : device_(&device), usage_(usage) {}
 
-    // Makes room for that many bytes, one element's at least. What the buffer held is lost where
-    // this returns true: then it is another one.
+    // Reserves this number of bytes, at least one element. Returns true if the buffer was replaced,
+    // so that its content is lost.
     [[nodiscard]] bool reserve(VkDeviceSize bytes);
 
     // Where to write before `record` records what brings the first `bytes` to the device, for
@@ -67,7 +67,7 @@ public:
 private:
     const GpuDevice* device_;
     VkBufferUsageFlags usage_;
-    Buffer target_, staging_;  // no staging buffer where the target is mapped
+    Buffer target_, staging_;  // no staging buffer if the target is mapped
 };
 
 // What was copied so far in these commands may be read by the processor once they are done.
@@ -98,7 +98,7 @@ private:
     VkDeviceMemory memory_ = VK_NULL_HANDLE;
 };
 
-// Images that a render pass draws into.
+// The images into which a render pass draws.
 class Framebuffer {
 public:
     Framebuffer() = default;

@@ -1,4 +1,4 @@
-// The images of a window: acquired, painted, drawn over, presented.
+// The swapchain of a window: acquires, paints, overlays and presents its images.
 #pragma once
 #include "gpu/device.h"
 #include "gpu/resources.h"
@@ -9,16 +9,16 @@
 
 namespace palpa {
 
-// What the window showed, 4 bytes a pixel (sRGB), rows from the top.
+// The pixels of the window, 4 bytes each (sRGB), rows from the top.
 struct WindowShot {
     std::uint32_t width = 0, height = 0;
     std::vector<std::uint8_t> rgba;
 };
 
-// One frame is under way at a time. The device must have a surface.
+// Only one frame is in flight. The device must have a surface.
 class Swapchain {
 public:
-    // `wanted`: the window's size in pixels, used where the surface leaves the choice.
+    // `wanted`: the window's size in pixels, used if the surface leaves the choice.
     Swapchain(GpuDevice& device, VkExtent2D wanted);
     Swapchain(const Swapchain&) = delete;
     Swapchain& operator=(const Swapchain&) = delete;
@@ -31,7 +31,7 @@ public:
     // A classic pass with one colour attachment, over what was painted before.
     VkRenderPass overlay_pass() const noexcept { return pass_; }
 
-    // Again for a window of another size, or after `present` said so.
+    // Rebuilds it for another window size, or after `present` returned false.
     void rebuild(VkExtent2D wanted);
 
     // One frame: `paint` fills an image of the window's size, in TRANSFER_DST_OPTIMAL; `overlay`
@@ -55,7 +55,7 @@ private:
         VkImage image = VK_NULL_HANDLE;
         VkImageView view = VK_NULL_HANDLE;
         VkFramebuffer framebuffer = VK_NULL_HANDLE;
-        VkSemaphore drawn = VK_NULL_HANDLE;  // the image is ready to be shown
+        VkSemaphore drawn = VK_NULL_HANDLE;  // signals that the image is ready to be presented
     };
 
     GpuDevice& device_;

@@ -1,4 +1,4 @@
-// What a haptic device is to the rest of the program: limits, a reading, a force.
+// The interface of a haptic device: limits, readings, force.
 #pragma once
 #include "math/vec.h"
 
@@ -11,41 +11,41 @@ namespace palpa {
 
 struct ContactModel;
 
-// The servo ticks this often, on every device so far.
+// Servo rate for all devices.
 inline constexpr double servo_rate_hz = 1000;
 inline constexpr double servo_tick_s = 1 / servo_rate_hz;
 
 // Limits as the maker or the driver states them. SI; axes: x right, y up, z towards the user.
 struct DeviceSpec {
     std::string name;
-    double rate_hz = servo_rate_hz;      // servo ticks a second
-    double peak_force_newton = 0;        // what the motors give at most
-    double continuous_force_newton = 0;  // what they give for ever; 0 if not known
-    double viscosity_N_s_per_m = 0;      // what is known of the device's own damping; 0 if nothing
-    Vec3 half_workspace_m = Vec3::Zero();  // the box in which the handle can move, from its centre
-    // False where nothing can hurt anybody: emulated, or led by a mouse. The whole safety chain
-    // guards every real device, whatever the mode.
+    double rate_hz = servo_rate_hz;        // servo ticks per second
+    double peak_force_newton = 0;          // peak force of the motors
+    double continuous_force_newton = 0;    // continuous force of the motors; 0 if unknown
+    double viscosity_N_s_per_m = 0;        // damping of the device itself; 0 if unknown
+    Vec3 half_workspace_m = Vec3::Zero();  // half size of the box in which the handle can move
+    // False for devices that cannot hurt anybody: emulated, or moved by a mouse. The full safety
+    // chain guards every real device in every mode.
     bool is_real = true;
 };
 
-// What a device that still answers says of its motors.
+// A problem that a responding device reports.
 enum class DeviceTrouble : std::uint8_t {
     None,
-    WarmMotors,   // it has to rest without force
-    ForceRefused  // one of its own limits was passed, and it let go
+    WarmMotors,   // the motors must cool without force
+    ForceRefused  // it exceeded one of its own limits and switched the force off
 };
 
-// One look at the device. `valid` is false if the device had nothing new or nothing sane to say.
+// One reading of the device. `valid` is false if there was no new or no plausible reading.
 struct DeviceReading {
-    double time_s = 0;               // on the device's own clock
-    Vec3 position_m = Vec3::Zero();  // of the handle, from the centre of the workspace
-    std::uint32_t buttons = 0;       // one bit a button, see Button
+    double time_s = 0;               // time on the device's own clock
+    Vec3 position_m = Vec3::Zero();  // position of the handle from the centre of the workspace
+    std::uint32_t buttons = 0;       // one bit per button, see Button
     bool valid = false;
-    Quat orientation = Quat::Identity();  // of the handle, where the device senses it
+    Quat orientation = Quat::Identity();  // orientation of the handle, if the device senses it
     DeviceTrouble trouble = DeviceTrouble::None;
 };
 
-// Valid, and every value a number.
+// Whether the reading is valid and all values are finite.
 inline bool is_sane(const DeviceReading& reading) noexcept {
     return reading.valid && std::isfinite(reading.time_s) && reading.position_m.allFinite() &&
            reading.orientation.coeffs().allFinite();
@@ -57,14 +57,13 @@ inline bool is_pressed(std::uint32_t buttons, Button button) noexcept {
     return (buttons & static_cast<std::uint32_t>(button)) != 0;
 }
 
-// How fast a hand wants something to go that goes on by itself: a handle that is not there, or
-// what is seen. The turn is a rotation vector.
+// A desired velocity, for a virtual handle or for the view. The turn is a rotation vector.
 struct HandRate {
     Vec3 m_per_s = Vec3::Zero();
     Vec3 rad_per_s = Vec3::Zero();
 };
 
-// Used by one thread, the servo's, unless said otherwise. No call waits, locks or allocates.
+// Used by the servo thread only, unless stated otherwise. No call waits, locks or allocates.
 class Device {
 public:
     Device() = default;
@@ -75,23 +74,24 @@ public:
     virtual const DeviceSpec& spec() const noexcept = 0;
     virtual DeviceReading read() noexcept = 0;
 
-    // The force (N) on the hand, held until the next write: one write a tick. An emulated device
-    // lives on the servo's clock and moves on by one tick here.
+    // Sets the force (N) on the hand until the next write, once per tick. An emulated device runs
+    // on the servo's clock and advances by one tick here.
     virtual void write(const Vec3& force_newton) noexcept = 0;
 
-    // What the person at it sees of the molecule: in every tick, before the force is written.
+    // Passes the present contact model for display, every tick before write().
     virtual void show(const ContactModel& /*contact*/) noexcept {}
 
-    // What the person has to know or do for the device to work, one sentence, which is never freed;
-    // empty where all is well. From any thread.
+    // What the person must know or do for the device to work, as one sentence with static lifetime;
+    // empty if all is well. From any thread.
     virtual std::string_view status() const noexcept { return {}; }
 
-    // Whether the person at it means this program, as its window has the focus; by the window's
-    // thread. A device that is heard without focus too rests meanwhile. Unless told otherwise, yes.
+    // Whether the person's input is meant for this program, because its window has the focus;
+    // called by the window's thread. A device that works without focus pauses meanwhile. Default:
+    // true.
     virtual void attend(bool /*is_meant*/) noexcept {}
 
-    // How fast the person wants to move what is seen, as if it were in hand: x right, y up, z
-    // towards the eye. By the window's thread.
+    // Desired velocity of the view, as if the scene were in hand: x right, y up, z towards the eye.
+    // Called by the window's thread.
     virtual HandRate view_rate() const noexcept { return {}; }
 };
 

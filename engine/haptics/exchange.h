@@ -1,5 +1,5 @@
-// The one place where servo and simulation meet: two mailboxes, the hand's pose inward and the
-// contact model outward. Here the loop from hand to molecule to hand is closed.
+// The two mailboxes between servo and simulation: the hand's pose inward, the contact model
+// outward. They close the loop from hand to molecule to hand.
 #pragma once
 #include "core/mailbox.h"
 #include "haptics/local_field.h"
@@ -10,21 +10,21 @@
 
 namespace palpa {
 
-// What the servo sends to the simulation, every tick.
+// Sent by the servo to the simulation in every tick.
 struct HandPose {
     double time_s = 0;
-    // Handle travel so far, but for what was travelled clutched, or under motors that were too warm
-    // to play the whole force.
+    // Total travel of the handle, m, without travel while the clutch was pressed, or that the
+    // thermal limit excluded.
     Vec3 travel_m = Vec3::Zero();
-    Quat turn = Quat::Identity();  // and handle turn
-    // Where guarded coupling has put the molecule. Without it the simulation moves the molecule by
-    // travel and turn.
+    Quat turn = Quat::Identity();  // total turn of the handle
+    // Pose of the molecule in guarded coupling. In the other modes it is unset, and the simulation
+    // moves the molecule by travel and turn.
     std::optional<MoleculePose> molecule = {};
-    std::uint32_t start = 0;   // of the contact model by which it did
-    std::uint64_t number = 0;  // of the servo's ticks, from 1 on
+    std::uint32_t start = 0;   // start number of the contact model in use
+    std::uint64_t number = 0;  // number of the servo tick, from 1
 };
 
-// The simulation's answer. One simulation step old when it is felt: the paper's z^-1.
+// The result of a simulation step. It is one step old when it is felt: the paper's z^-1.
 struct LocalContactModel {
     ContactModel model;
     LocalField field;

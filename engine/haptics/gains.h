@@ -1,4 +1,4 @@
-// The laws of the coupling: molecular force to hand force, handle travel to molecule travel. SI.
+// The coupling laws: molecular force to hand force, handle travel to molecule travel. SI units.
 #pragma once
 #include "math/vec.h"
 
@@ -13,11 +13,11 @@ namespace palpa {
 class PrintedForceLaw {
 public:
     struct Parameters {
-        double F_h1 = 1.0;       // N, where low forces tend to
-        double F_h2 = 3.0;       // N, where high forces tend to; > F_h1
-        double F_0 = 1.5e-9;     // N, between low and high molecular forces
-        double A_fmin = 0.64e9;  // gain of high forces
-        double A_fmax = 5.1e9;   // gain of low forces
+        double F_h1 = 1.0;       // N, limit for weak forces
+        double F_h2 = 3.0;       // N, limit for strong forces; > F_h1
+        double F_0 = 1.5e-9;     // N, between weak and strong molecular forces
+        double A_fmin = 0.64e9;  // gain of strong forces
+        double A_fmax = 5.1e9;   // gain of weak forces
     };
 
     explicit PrintedForceLaw(const Parameters& parameters) noexcept;
@@ -30,8 +30,7 @@ public:
 
     double value(double F_m) const noexcept;  // N
     double slope(double F_m) const noexcept;  // dF_h/dF_m
-    // F_m (N) of a hand force: exact to what the rounding of F_h leaves of it; ±infinity from ±F_h2
-    // on, no number for no number.
+    // F_m (N) for a hand force, exact within rounding of F_h; ±infinity from ±F_h2 on; NaN for NaN.
     double inverse(double F_h) const noexcept;
 
 private:
@@ -46,7 +45,7 @@ struct ConstantForceLaw {
 
     double value(double F_m) const noexcept { return gain * F_m; }
     double slope(double /*F_m*/) const noexcept { return gain; }
-    // Without a gain no molecular force gives a hand force: ±infinity, but 0 for 0.
+    // With gain 0 no molecular force gives a hand force: ±infinity, but 0 for 0.
     double inverse(double F_h) const noexcept { return F_h == 0 ? 0 : F_h / gain; }
 };
 
@@ -66,8 +65,8 @@ public:
         double F_lo = 20e-12;    // N
         double F_hi = 3e-9;      // N, > 2 F_lo
         double F_h_lo = 0.3;     // N
-        double F_h_hi = 3.0;     // N, where the usual device is clamped
-        double F_h_limit = 3.3;  // N, > F_h_hi, what it is built for
+        double F_h_hi = 3.0;     // N, usual force limit of a device
+        double F_h_limit = 3.3;  // N, > F_h_hi, peak force of the device
     };
 
     explicit PerceptualForceLaw(const Parameters& parameters) noexcept;
@@ -94,11 +93,11 @@ using ForceLaw = std::variant<PrintedForceLaw, ConstantForceLaw, PerceptualForce
 // Force on the hand (N) for the molecular force F_m (N) along one direction, and its derivative.
 double hand_force(const ForceLaw& law, double F_m) noexcept;
 double hand_force_slope(const ForceLaw& law, double F_m) noexcept;
-// In space the law acts on the norm, along the force. What is no number stays none.
+// In space the law acts on the norm of the force, along its direction. NaN stays NaN.
 Vec3 hand_force(const ForceLaw& law, const Vec3& force_newton) noexcept;
-// The molecular force (N) that gives this hand force; infinite where none does.
+// The molecular force (N) for this hand force; infinite if there is none.
 double hand_force_inverse(const ForceLaw& law, double F_h) noexcept;
-// F_h/F_m, the gain that is on at F_m; its limit, the slope, at F_m = 0.
+// The gain F_h/F_m at F_m; at F_m = 0 its limit, the slope.
 double force_gain(const ForceLaw& law, double F_m) noexcept;
 
 // Derivative of the hand force in space, where the law acts on the norm along the force: its slope
@@ -107,7 +106,7 @@ Mat3 force_jacobian(const ForceLaw& law, const Vec3& force_newton) noexcept;
 // The stiffest that a hand feels a molecular stiffness (N/m) in any direction, times A_d: the
 // largest eigenvalue of the symmetric part of jacobian times stiffness, 0 where it is negative.
 // Infinite where force or stiffness are not finite: then the capped gain lets nothing move.
-double largest_felt(const Mat3& felt) noexcept;  // of that product
+double largest_felt(const Mat3& felt) noexcept;  // from that product
 double largest_felt(const ForceLaw& law, const Vec3& force_newton, const Mat3& stiffness) noexcept;
 
 // Eq. 3 of the paper as printed: A_d = A_dmin + β [atan((|F| - F_off) γ) - atan(-F_off γ)], handle
@@ -115,8 +114,8 @@ double largest_felt(const ForceLaw& law, const Vec3& force_newton, const Mat3& s
 class PrintedDisplacementLaw {
 public:
     struct Parameters {
-        double gamma = 10e11;     // 1/N, how sharp the transition is
-        double F_off = 20e-12;    // N, where it is
+        double gamma = 10e11;     // 1/N, sharpness of the transition
+        double F_off = 20e-12;    // N, force of the transition
         double A_dmin = 0.005e9;  // far from everything
         double A_dmax = 0.25e9;   // in contact
     };
@@ -156,7 +155,7 @@ private:
     double length_m_;
 };
 
-// Has no inverse.
+// Constant; has no inverse.
 struct ConstantDisplacementLaw {
     double gain = 0.25e9;
 
@@ -178,7 +177,7 @@ double displacement_gain_slope(const DisplacementLaw& law, double F_m,
 // A_d: slope times stiffness along a line, largest_felt() in space.
 double capped_gain(double A_d, double felt, double K_cap) noexcept;
 
-// Both sides of the paper's coupling.
+// Both laws of the coupling.
 struct CouplingLaws {
     ForceLaw force;
     DisplacementLaw displacement;

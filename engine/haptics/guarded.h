@@ -1,5 +1,5 @@
-// Guarded coupling: the servo moves the molecule itself, in the field as the last step left it, so
-// that force and stiffness are of this very moment whatever the period of the simulation.
+// Guarded coupling: the servo itself moves the molecule in the field of the last simulation step,
+// so that force and stiffness are up to date at every tick, whatever the period of the simulation.
 #pragma once
 #include "core/choices.h"
 #include "haptics/device.h"
@@ -17,18 +17,18 @@ struct GuardedSettings {
     DisplacementLaw displacement_law = RepairedDisplacementLaw({});
     GainShape gain_shape = GainShape::Scalar;
     WorkspaceMap workspace = {};
-    // What a hand may feel of a stiffness at most: A_d is raised until that holds. By default half
-    // of what a device and this damping keep stable, 0.5 (B_h + B)/(1.5 T).
+    // The stiffness cap, N/m: A_d is raised until the stiffness felt is below it. Default: half of
+    // the stability limit of a device with this damping, 0.5 (B_h + B)/(1.5 T).
     double cap_N_per_m = 200;
     // A_d is no less than this much for each newton that is felt: where the law is steep, a
     // molecule that is far from any wall would else go further in a tick than the limits of a step
     // let it.
     double least_A_d_per_newton = 0;
     double damping_N_s_per_m = 0.5;         // B
-    double horizon_s = 1.5 * servo_tick_s;  // by which the force is predicted
-    double stop_newton = 10e-9;             // on it or on one atom; the molecule goes no further in
-    Vec3 half_workspace_m = Vec3::Constant(0.1);  // of the device
-    std::uint32_t revision = 0;  // another number: laws changed, the force glides to theirs
+    double horizon_s = 1.5 * servo_tick_s;  // prediction horizon of the force
+    double stop_newton = 10e-9;  // contact force on the molecule or one atom at which it stops
+    Vec3 half_workspace_m = Vec3::Constant(0.1);  // half workspace of the device
+    std::uint32_t revision = 0;  // a new number means new laws; the force is blended to them
 };
 
 // The stiffness (N/m) that a hand may feel: half of what a device of this viscosity, with this
@@ -54,10 +54,10 @@ inline constexpr double most_of_cap = 1.1;
 struct GuardedGain {
     double A_d = 0;           // handle metres per molecule metre, where it is largest
     double felt_N_per_m = 0;  // of the stiffness, where it is largest
-    // A_d of every direction, and back, molecule metres per handle metre: dr = inverse dx.
+    // A_d as a tensor, and its inverse, molecule metres per handle metre: dr = inverse dx.
     Mat3 tensor = Mat3::Zero(), inverse = Mat3::Zero();
-    Mat3 felt = Mat3::Zero();  // stiffness at the handle, N/m, of every direction
-    double cap_ratio = 1;      // A_d, where it is largest, over the law's
+    Mat3 felt = Mat3::Zero();  // stiffness felt at the handle as a tensor, N/m
+    double cap_ratio = 1;      // largest A_d divided by that of the law (cap ratio)
 };
 
 // Where the molecule feels this force (N) and stiffness (N/m): the law's A_d, raised until the cap
@@ -66,15 +66,15 @@ struct GuardedGain {
 GuardedGain guarded_gain(const GuardedSettings& settings, const Vec3& force_newton,
                          const Mat3& stiffness) noexcept;
 
-// Everything that one tick leaves to the next.
+// The state between two ticks.
 struct GuardedState {
     bool is_placed = false;
-    std::uint32_t start = 0;  // of the contact model
+    std::uint32_t start = 0;  // start number of the contact model
     MoleculePose molecule;
     Vec3 overtravel_m =
         Vec3::Zero();  // handle travel that the stop did not let the molecule follow
     LocalForce at_place;
-    double allowance_angstrom = 0;  // that it may go at once
+    double allowance_angstrom = 0;  // distance that it may move at once
     // The last step, if it was followed whole: handle travel, and molecule per handle travel as it
     // was where it began, and as was taken.
     Vec3 stepped_m = Vec3::Zero();
@@ -82,38 +82,41 @@ struct GuardedState {
     Vec3 blend_residual_newton = Vec3::Zero();  // the old model's force less the new one's, fading
     double since_arrival_s = 0,
            interval_s = 0;               // of contact models: the last, between the last two
-    double blend_s = 0;                  // in which nearly all of that residual goes
-    Vec3 handle_m_per_s = Vec3::Zero();  // filtered
-    // Of late, m: handle travel that the molecule was to follow, and what the limits left of it.
+    double blend_s = 0;                  // time constant in which this residual fades
+    Vec3 handle_m_per_s = Vec3::Zero();  // low-pass filtered velocity
+    // Recent sums, m: handle travel that the molecule should follow, and the part that the limits
+    // allowed.
     double wanted_m = 0, allowed_m = 0;
     double energy_balance_J =
         0;  // work on the hand where the molecule did not follow, less what was damped
-    double clutch_blend = 1;          // 0 to 1: of the forces, what a hand with a clutch feels
-    Vec3 law_newton = Vec3::Zero();   // that the force law gave
-    Vec3 felt_newton = Vec3::Zero();  // the same with what the stop has kept, as it was felt
+    double clutch_blend = 1;          // clutch blend, 0 to 1, of the force on the hand
+    Vec3 law_newton = Vec3::Zero();   // output of the force law
+    Vec3 felt_newton = Vec3::Zero();  // the same with the overtravel force, as felt
     Vec3 law_blend_residual_newton =
         Vec3::Zero();  // the old law's force less the new one's, fading
     std::uint32_t revision = 0;
-    bool holds_another = false;  // since the last tick: the force glides to what that one feels
+    bool holds_another =
+        false;  // the hand holds something else since the last tick: the force is blended to it
 };
 
-// What a tick found.
+// The result of a tick.
 struct GuardedTick {
-    Vec3 hand_newton = Vec3::Zero();          // for the hand
-    Vec3 damping_newton = Vec3::Zero();       // its part that damps
-    Vec3 force_newton = Vec3::Zero();         // on the molecule
-    double displacement_gain = 0;             // A_d, where it is largest
-    double cap_ratio = 1;                     // the same over the law's
-    double felt_N_per_m = 0;                  // of the molecule's stiffness, where it is largest
-    Mat3 molecule_per_handle = Mat3::Zero();  // travel: 1/A_d, of every direction
-    Vec3 clipped_m = Vec3::Zero();  // handle travel that the limits of a step did away with
+    Vec3 hand_newton = Vec3::Zero();     // force on the hand
+    Vec3 damping_newton = Vec3::Zero();  // its damping part
+    Vec3 force_newton = Vec3::Zero();    // force on the molecule
+    double displacement_gain = 0;        // largest A_d
+    double cap_ratio = 1;                // cap ratio
+    double felt_N_per_m = 0;             // largest stiffness felt
+    Mat3 molecule_per_handle =
+        Mat3::Zero();               // molecule travel per handle travel: inverse of A_d as a tensor
+    Vec3 clipped_m = Vec3::Zero();  // clipped travel of the handle at the limits of a step
 };
 
-// What the handle did in a tick.
+// The motion of the handle in a tick.
 struct HandleStep {
     Vec3 moved_m = Vec3::Zero();
     Quat turned = Quat::Identity();
-    double followed = 1;  // share of the travel that is to be the molecule's
+    double followed = 1;  // share of the travel that the molecule follows
 };
 
 // The handle's velocity after a tick in which it moved by that much, through a low-pass. What no

@@ -1,4 +1,4 @@
-// Models of the hand that holds the handle, and the path it wants to follow.
+// Models of the hand that holds the handle, and the path that it follows.
 #pragma once
 #include "core/choices.h"
 #include "core/mailbox.h"
@@ -20,21 +20,21 @@ struct HandModel {
     double mass_kg = 0;
     double damping_N_s_per_m = 0;
     double stiffness_N_per_m = 0;
-    double grip_stiffness_N_per_m = 0;  // 0: no grip between
+    double grip_stiffness_N_per_m = 0;  // 0: rigid grip
     double grip_damping_N_s_per_m = 0;
 };
 
-// The hand of that grip; nothing where nobody holds the handle.
+// The hand model for a grip; nothing if nobody holds the handle.
 std::optional<HandModel> hand_model(HandGrip grip) noexcept;
 
-// The same hand once it wants no place any more: its mass and its damping stay on the handle.
+// The same hand without a target: only its mass and damping act on the handle.
 std::optional<HandModel> relaxed(std::optional<HandModel> hand) noexcept;
 
-// Spring between the handle and the place the hand wants, where nothing moves (N/m).
+// Static stiffness between the handle and the target of the hand, N/m.
 double static_stiffness(const HandModel& hand) noexcept;
 
-// Where the hand wants the handle at a time. Between two waypoints it goes along a minimum-jerk
-// curve, before the first and after the last it rests.
+// Target of the handle at one time. Between two waypoints it follows a minimum-jerk curve; before
+// the first and after the last it rests.
 struct HandWaypoint {
     double time_s = 0;
     double x_m = 0, y_m = 0, z_m = 0;
@@ -51,14 +51,14 @@ struct HandTarget {
 
 HandTarget find_target(const std::vector<HandWaypoint>& path, double time_s) noexcept;
 
-// A hand turns back this far (m) before the stops of the workspace.
+// Distance (m) from the stops of the workspace at which a hand turns back.
 inline constexpr double stop_margin_m = 0.005;
 
-// A hand's plan for a session: a path, when it lets go, and an impulse that knocks the handle.
+// The plan of a hand: a path, the time of release, and an impulse on the handle.
 struct HandScript {
-    std::vector<HandWaypoint> path;  // times ascending
-    // The path is the molecule's (m from its start): the hand brings it there by sight, and waits
-    // for it.
+    std::vector<HandWaypoint> path;  // ascending times
+    // The path is that of the molecule (m from its start): the hand leads it there by sight and
+    // waits for it.
     bool leads = false;
     std::optional<double> release_s = {};
     double kick_N_s = 0;  // along x, spread over `kick_duration_s`
@@ -66,12 +66,13 @@ struct HandScript {
     double kick_duration_s = 0.01;
 };
 
-// What a window or an operator asks of the hand on an emulated device: they post, the device reads.
+// Orders of a window or an operator for the hand on an emulated device: they post, the device
+// reads.
 struct HandOrder {
-    Vec3 target_m = Vec3::Zero();  // where the hand wants the handle
-    std::uint32_t restarts = 0;    // another number: a script begins anew, a live hand rests
-    bool frozen = false;           // time stands still for handle and hand
-    std::uint32_t grants = 0;      // another number: `granted_ticks` go by although it is frozen
+    Vec3 target_m = Vec3::Zero();  // target of the handle
+    std::uint32_t restarts = 0;    // a new number restarts the script, or lets a live hand rest
+    bool frozen = false;           // stops time for handle and hand
+    std::uint32_t grants = 0;      // a new number lets `granted_ticks` pass while frozen
     int granted_ticks = 0;
 };
 using HandOrders = Mailbox<HandOrder>;

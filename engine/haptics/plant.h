@@ -24,7 +24,7 @@ using PlantState = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 4, 1>;
 struct Plant {
     PlantMatrix A;
     PlantInputs B;
-    double handle_mass_kg = 0;  // of all that moves rigidly with the handle
+    double handle_mass_kg = 0;  // mass that moves rigidly with the handle
 };
 
 Plant build_plant(const DeviceDynamics& device, const std::optional<HandModel>& hand);

@@ -1,4 +1,5 @@
-// The last stages before the device: what is wrong, fades, clamp, slew. SI units.
+// The safety chain, the last stage before the device: fault checks, fades, clamp, slew limit. SI
+// units.
 #pragma once
 #include "haptics/device.h"
 #include "math/vec.h"
@@ -17,19 +18,24 @@ inline constexpr std::size_t slow_window_ticks = 250;
 
 // Times count from the event to the tick that sends zero.
 struct SafetySettings {
-    double clamp_newton = 3;  // on the norm of the force; lowered, it is reached within the slew
-    // False: only clamp and non-finite, as in the paper's loop. Nothing else of this struct, nor
-    // disengage() nor the end of the program, then acts.
+    double clamp_newton =
+        3;  // limit of the norm of the force; a lower limit is reached at the slew rate
+    // False: only the clamp and the check for non-finite values act, as in the paper's loop; no
+    // other setting, disengage() or end of the program has an effect.
     bool is_full = true;
-    // True: the force is there from the first tick. A real hand starts with quiet cycles and ramp.
+    // True: the force acts from the first tick. With a real hand it starts after quiet cycles with
+    // a ramp.
     bool starts_engaged = true;
 
-    double slew_newton_per_s = 500;  // of the force sent; a tick of more than 1 ms counts as 1 ms
-    double fastest_m_per_s = 1.5;    // of the handle; faster, the force is zero at once
-    double farthest_jump_m = 0.005;  // between valid readings, for each millisecond between them
-    double late_s = 0.02;            // since the last tick
-    double gone_s = 0.010;           // without a valid reading
-    double ending_s = 0.010;         // fade when the program ends
+    double slew_newton_per_s =
+        500;  // slew limit of the sent force; a tick longer than 1 ms counts as 1 ms
+    double fastest_m_per_s =
+        1.5;  // largest speed of the handle; above it the force is zero at once
+    double farthest_jump_m =
+        0.005;                // largest jump between valid readings, per millisecond between them
+    double late_s = 0.02;     // largest time since the last tick
+    double gone_s = 0.010;    // largest time without a valid reading
+    double ending_s = 0.010;  // fade when the program ends
 
     // A reading that stands still while the force changes. If the device's own time stamp stands
     // still too, after having run, any change of the force counts. Else the position must have
@@ -71,89 +77,89 @@ struct SafetySettings {
 // of them it plays the force of a simulation that has died.
 inline constexpr double longest_real_period_s = 1;
 
-// Whether the device may be run with that period.
+// Whether the device may be used with this period.
 bool bears_period(const DeviceSpec& device, double period_s) noexcept;
 
 // Takes over what a device says of itself; nothing beside what the settings allow already. Without
 // motors none can be seen to hang in its readings, and none grows hot.
 void limit_to(const DeviceSpec& device, SafetySettings& settings) noexcept;
 
-// From harmless to grave.
+// From harmless to severe.
 enum class SafetyStage {
     None,
     Slewed,
     Clamped,
-    ThermalLimit,  // clamped at less than the clamp
+    ThermalLimit,  // clamped below the normal limit because of warm motors
     Engaging,      // the ramp
-    Waiting,       // for quiet cycles
-    Disengaged,    // by disengage()
+    Waiting,       // waiting for quiet cycles
+    Disengaged,    // off after disengage(), as during a pause
     Ending,
-    Stale,     // fading, or faded
-    CoolDown,  // the device says that its motors are warm: the same
+    Stale,     // contact model too old: the force fades or has faded
+    CoolDown,  // the device reports warm motors: the force fades likewise
     TooFast,
-    Late,  // or the clock stands still, went back, or is no number
+    Late,  // tick too late, or the clock stopped, went back, or is not finite
     Frozen,
     Jump,
-    Refused,  // by the device, which let go
+    Refused,  // the device switched the force off
     Unplugged,
     NotFinite
 };
 
-// What happened and what the user can do; empty for None.
+// What happened and what the user can do, for the window; empty for None.
 std::string_view words(SafetyStage stage) noexcept;
 
-// What one tick reports to the guard.
+// The input of one tick.
 struct SafetyInput {
     Vec3 wanted_newton = Vec3::Zero();
     DeviceReading reading;
     double now_s = 0;        // the servo's own monotonic clock
-    double model_age_s = 0;  // 0 before the first model
+    double model_age_s = 0;  // age of the contact model, s; 0 before the first
     double period_s = 0;     // of the simulation
     Vec3 velocity_m_per_s = Vec3::Zero();
-    bool is_ending = false;  // exit was asked for
+    bool is_ending = false;  // the program is ending
 };
 
-// Everything that one tick leaves to the next. A fresh one starts anew.
+// The state between two ticks. A new state starts from the beginning.
 struct SafetyState {
     SafetyState() noexcept;
 
     // non-finite
-    bool not_finite = false;  // latched
+    bool not_finite = false;  // stays set until release()
     // clock
     double last_s = 0;
     bool has_clock = false;
     double stood_s = 0;  // without a tick of time; each tick counts as one
-    std::array<std::uint32_t, slow_window_ticks> ticks_us;  // the last ones, a ring
+    std::array<std::uint32_t, slow_window_ticks> ticks_us;  // ring of the last tick lengths
     std::uint32_t ticks_sum_us = 0;
     std::size_t next_tick = 0;
     // reading
-    Vec3 handle_m = Vec3::Zero();  // last valid position
+    Vec3 handle_m = Vec3::Zero();  // last valid handle position
     bool has_reading = false;
     double unread_s = std::numeric_limits<double>::infinity();  // since the last valid reading
-    double stamp_s = 0;                                         // the device's own, last valid
-    bool stamp_runs = false;                                    // it has moved so far
-    Vec3 hung_newton = Vec3::Zero();   // sent when stamp or position last changed
-    bool hung_changed = false;         // another force was sent since
-    double hung_s = 0;                 // since then
-    double still_s = 0;                // the position has not changed; up to frozen_s
-    Vec3 still_newton = Vec3::Zero();  // mean of what was sent in that time
+    double stamp_s = 0;                // last valid time stamp of the device
+    bool stamp_runs = false;           // whether the time stamp advances
+    Vec3 hung_newton = Vec3::Zero();   // force sent when stamp or position last changed
+    bool hung_changed = false;         // whether another force was sent since
+    double hung_s = 0;                 // time since then
+    double still_s = 0;                // time without change of position; up to frozen_s
+    Vec3 still_newton = Vec3::Zero();  // mean force sent in that time
     double pushed_s = 0;               // the force has been `frozen_newton` away from it since
     // stale model
-    double faded = 0;  // 0 to 1
+    double faded = 0;  // share of the fade done, 0 to 1
     // warm motors
-    double cool_down_share = 0;  // share of the force that they take away, 0 to 1
+    double cool_down_share = 0;  // share of the force removed because of warm motors, 0 to 1
     // end
-    double ending_s = 0;  // since it was asked for
+    double ending_s = 0;  // time since the program began to end
     // heat
-    double mean_square_newton2 = 0;  // leaky mean
+    double mean_square_newton2 = 0;  // leaky mean of the squared force
     bool is_thermally_limited = false;
-    double limited_from_newton = 0;  // what was sent when they got hot
-    double glided = 0;               // 0: clamp as set, 1: clamp at thermal_limit_newton
+    double limited_from_newton = 0;  // force sent when the thermal limit began
+    double glided = 0;               // 0: normal limit, 1: limit at thermal_limit_newton
     // engaging
     enum class Engagement { Fresh, Off, Waiting, Rising, On };
     Engagement engagement = Engagement::Fresh;
-    int quiet_cycles = 0;  // so far
-    double risen = 0;      // 0 to 1
+    int quiet_cycles = 0;  // quiet ticks so far
+    double risen = 0;      // share of the rise done, 0 to 1
     SafetyStage reason =
         SafetyStage::None;  // gravest that took the force away; None once it is back
     // sending
@@ -161,14 +167,13 @@ struct SafetyState {
 };
 
 struct SafetyResult {
-    Vec3 newton = Vec3::Zero();             // to be sent
-    SafetyStage stage = SafetyStage::None;  // the gravest that acted in this tick
-    // Why the force is not back in full, while it waits or rises; else None.
+    Vec3 newton = Vec3::Zero();             // force to send
+    SafetyStage stage = SafetyStage::None;  // most severe stage of this tick
+    // Why the force has not fully returned, while it waits or rises; else None.
     SafetyStage reason = SafetyStage::None;
-    double share = 1;  // of the wanted force that fades and clamp let through; slew not counted
-    // Of what cold motors would play, what the heat of the motors lets through. Where the molecule
-    // follows this share of the handle's travel until the next tick, the limit gives no energy: the
-    // hand goes only as far as it pays for.
+    double share = 1;  // share of the wanted force that passes fades and clamp; without slew
+    // Share of the force that the thermal limit lets through. The molecule follows this share of
+    // the handle's travel until the next tick, so that the limit is passive.
     double heat_share = 1;
 };
 
@@ -186,10 +191,10 @@ struct SafetyResult {
 // stand still or jump in between. If no tick follows, the caller sends the zero.
 void disengage(SafetyState& state) noexcept;
 
-// After disengage(): back through quiet cycles and ramp. Nothing otherwise.
+// After disengage(): the force returns after quiet cycles with a ramp. Otherwise no effect.
 void engage(SafetyState& state) noexcept;
 
-// Stopped until release().
+// Whether the force is off until release().
 bool is_latched(const SafetyState& state) noexcept;
 
 // Ends a latched stop; quiet cycles and ramp follow.

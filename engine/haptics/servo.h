@@ -1,4 +1,4 @@
-// One tick of the 1 kHz servo: reading, clutch, newest contact model, force law, safety, force.
+// One tick of the 1 kHz servo: reading, clutch, contact model, force law, safety, force.
 #pragma once
 #include "haptics/device.h"
 #include "haptics/exchange.h"
@@ -18,63 +18,65 @@ namespace palpa {
 inline constexpr int max_servo_delay_ticks = 7;
 
 struct ServoSettings {
-    ForceLaw force_law = ConstantForceLaw{};  // the paper's coupling, force held between two steps
+    ForceLaw force_law = ConstantForceLaw{};  // force law of the paper's modes
     SafetySettings safety = {.is_full = false};
-    int delay_ticks = 0;  // between a force and its sending, 0 to max_servo_delay_ticks
-    std::optional<GuardedSettings> guarded = {};  // instead of the paper's
-    bool is_ending = false;                       // exit was asked for
+    int delay_ticks = 0;  // delay between computing and sending a force, 0 to max_servo_delay_ticks
+    std::optional<GuardedSettings> guarded = {};  // guarded coupling; unset for the paper's modes
+    bool is_ending = false;                       // the program is ending
 };
 
-// Everything that one tick leaves to the next.
+// The state between two ticks.
 struct ServoState {
     ServoState() { under_way.fill(Vec3::Zero()); }
 
     // clutch
-    Vec3 handle_m = Vec3::Zero();         // last valid position
-    Vec3 travel_m = Vec3::Zero();         // handle travel that the molecule is to follow
-    Quat orientation = Quat::Identity();  // last valid one
-    Quat turn = Quat::Identity();         // handle turn outside of the clutch
+    Vec3 handle_m = Vec3::Zero();         // last valid handle position
+    Vec3 travel_m = Vec3::Zero();         // handle travel for the molecule
+    Quat orientation = Quat::Identity();  // last valid orientation
+    Quat turn = Quat::Identity();         // handle turn without clutched motion
     bool has_reading = false;
     // contact model
-    ContactModel contact;  // the newest that came
+    ContactModel contact;  // newest contact model
     bool has_touch = false;
-    double model_s = 0;  // when it came, on the servo's clock
+    double model_s = 0;  // time of its arrival on the servo's clock
     GuardedState guarded;
     // sending
-    std::array<Vec3, max_servo_delay_ticks + 1> under_way;  // ring of forces, by tick
+    std::array<Vec3, max_servo_delay_ticks + 1> under_way;  // ring of forces not yet sent, by tick
     std::uint64_t tick = 0;
-    std::uint64_t poses = 0;  // that were posted
+    std::uint64_t poses = 0;  // number of posted poses
     // safety
     SafetyState safety;
     bool was_still = false, was_full = false;
     double heat_share = 1;  // of the last force, see SafetyResult
     // energy observer
-    double hand_energy_J = 0;  // work done on the hand so far; + = given to it
+    double hand_energy_J = 0;  // work on the hand so far; + = given to it
 };
 
-// What a tick did, for the recording and the overlay.
+// The result of a tick, for recording and window.
 struct ServoTick {
     DeviceReading reading;
     // The newest; in guarded coupling with place, force, torque, stiffness and displacement gain of
     // this tick.
     ContactModel contact;
-    Vec3 sent_newton = Vec3::Zero();  // to be written to the device
-    double force_gain = 0;            // F_h/F_m of the force law at this tick
+    Vec3 sent_newton = Vec3::Zero();  // force for the device
+    double force_gain = 0;            // gain F_h/F_m of the force law at this tick
     double hand_energy_J = 0;
     bool clutched = false;
-    bool clamped = false;                    // the clamp acted
-    bool stopped = false;                    // a force was not finite; latched
-    double followed = 1;                     // of the handle's travel, but for clutch and limits
-    bool is_safety_full = true;              // the whole chain acted, or the paper's part of it
-    SafetyStage stage = SafetyStage::None;   // the gravest that acted
-    SafetyStage reason = SafetyStage::None;  // why the force is not back in full
-    // Guarded coupling alone.
-    double cap_ratio = 1;                     // A_d over the law's, for the cap
-    double felt_N_per_m = 0;                  // of the molecule's stiffness, where it is largest
-    Mat3 molecule_per_handle = Mat3::Zero();  // travel: 1/A_d, of every direction
-    Vec3 damping_newton = Vec3::Zero();       // of the servo's own, in this tick's force
-    Vec3 overtravel_m = Vec3::Zero();         // handle travel that the stop holds back
-    Vec3 clipped_m = Vec3::Zero();  // that the limits of a step did away with in this tick
+    bool clamped = false;  // whether the force was clipped
+    bool stopped = false;  // a force was not finite; stays set
+    double followed =
+        1;  // share of the handle's travel that the molecule followed, without clutch and limits
+    bool is_safety_full = true;              // whether the full safety chain acted
+    SafetyStage stage = SafetyStage::None;   // most severe stage
+    SafetyStage reason = SafetyStage::None;  // why the force has not fully returned
+    // The following fields are for guarded coupling only.
+    double cap_ratio = 1;     // cap ratio: A_d divided by that of the law
+    double felt_N_per_m = 0;  // largest stiffness felt, N/m
+    Mat3 molecule_per_handle =
+        Mat3::Zero();  // molecule travel per handle travel: inverse of A_d as a tensor
+    Vec3 damping_newton = Vec3::Zero();  // damping force of the servo in this tick
+    Vec3 overtravel_m = Vec3::Zero();    // overtravel of the handle at the stop
+    Vec3 clipped_m = Vec3::Zero();       // clipped travel in this tick
 };
 
 // Takes the newest contact model out of the exchange, puts the hand's pose in, returns the force
@@ -92,8 +94,8 @@ struct ServoHand {
     ServoSettings settings;
     ServoState state;
     Exchange exchange;
-    DeviceReading reading;  // of this tick
-    ServoTick tick;         // what it did
+    DeviceReading reading;  // reading of this tick
+    ServoTick tick;         // result of this tick
 };
 
 // One tick of all hands, `most_hands` at most, in their order: each feels what hands before it hold

@@ -1,4 +1,4 @@
-// What carries a small workspace over a large scene: travel beyond what the handle does itself. SI.
+// Maps a small workspace onto a large scene: travel in addition to that of the handle. SI units.
 #pragma once
 #include "math/vec.h"
 
@@ -6,22 +6,22 @@
 
 namespace palpa {
 
-// Nothing by itself: the hand lets go with the clutch and takes hold again elsewhere.
+// No additional travel: the hand uses the clutch.
 struct ClutchMap {};
 
 // Place inside a box around the centre, rate outside (L. Dominjon, A. Lécuyer et al., World Haptics
 // 2005, there a sphere): the molecule goes on along the way from the box to the handle, with the
 // square of its length. The box is not felt.
 struct BubbleMap {
-    double fraction = 0.6;           // of the half workspace, from 0 to below 1
-    double fastest_m_per_s = 0.100;  // of handle travel; at the edge of the workspace
+    double fraction = 0.6;           // share of the half workspace, from 0 to below 1
+    double fastest_m_per_s = 0.100;  // handle travel at the edge of the workspace
 };
 
 // Drift to the centre (F. Conti, O. Khatib, World Haptics 2005): while the hand moves, the molecule
 // goes outward by a share of the way. A hand that guides it by sight comes back to the centre
 // unaware, by e^-1 over `half workspace/share` of its way; a hand at rest is left alone.
 struct DriftMap {
-    double share = 0.15;  // of the way, at the edge of the workspace; below 1/sqrt(3)
+    double share = 0.15;  // share of the travel at the edge of the workspace; below 1/sqrt(3)
 };
 
 using WorkspaceMap = std::variant<ClutchMap, BubbleMap, DriftMap>;

@@ -28,36 +28,36 @@
 namespace palpa {
 
 enum class ImdState : std::uint8_t {
-    Closed,     // not asked to connect, or left in order
-    Waiting,    // connects, greets, awaits its first frame, tries again, or leaves
-    Connected,  // frames come, or the client has paused them
-    Late,       // no frame for some time; the engine has been sent zero forces
-    Lost,       // over, and why() says what came and what was expected
+    Closed,     // not connected, or disconnected normally
+    Waiting,    // connecting, waiting for the handshake or first frame, retrying, or disconnecting
+    Connected,  // frames arrive, or the client has paused them
+    Late,       // no frame for some time; zero forces were sent
+    Lost,       // connection lost; why() gives the reason
 };
 
-// What keeps frames from coming, or last did.
+// Why no frames arrive, or arrived last.
 enum class ImdLack : std::uint8_t {
-    Answer,     // to the connection
-    Handshake,  // after it
-    Frame,      // after the handshake
-    Version,    // it speaks another than the options ask for
-    Atoms,      // it sends another number than the options have
-    Order,      // anything else: it ended, or sent nonsense
+    Answer,     // answer to the connection
+    Handshake,  // no handshake
+    Frame,      // no frame after the handshake
+    Version,    // another IMD version than required
+    Atoms,      // another number of atoms than expected
+    Order,      // anything else: it ended, or sent invalid data
 };
 
 struct ImdClientOptions {
-    std::string address = "127.0.0.1";  // of numbers, or "localhost"
+    std::string address = "127.0.0.1";  // numeric, or "localhost"
     std::uint16_t port = imd_port;
     // With limits.atoms of 0, what the engine sends first; the same after it was lost.
     ImdLimits limits{};
-    std::optional<ImdUnits> units{};        // of the wire; nothing: imd_units_of its version
-    int rate = 0;                           // steps between frames; 0: as the engine has it
-    std::optional<int> version{};           // that it must speak; nothing: any
-    bool pulls_in_version_3 = false;        // an experiment: engines do not agree on its forces
-    double answer_within_s = 5;             // to the connection and with the handshake
-    double late_after_s = 1;                // without a frame
-    double lost_after_s = 30;               // without a frame
-    std::optional<double> retry_after_s{};  // once it was lost; nothing: never
+    std::optional<ImdUnits> units{};  // units of the connection; unset: imd_units_of its version
+    int rate = 0;                     // steps between frames; 0: the engine's setting
+    std::optional<int> version{};     // required version; unset: any
+    bool pulls_in_version_3 = false;  // experimental: engines differ in version 3
+    double answer_within_s = 5;       // s until the connection and until the handshake
+    double late_after_s = 1;          // without a frame
+    double lost_after_s = 30;         // without a frame
+    std::optional<double> retry_after_s{};  // s after a loss; unset: never
 };
 
 class ImdClient {
@@ -65,7 +65,7 @@ public:
     explicit ImdClient(ImdClientOptions options);
     ImdClient(const ImdClient&) = delete;
     ImdClient& operator=(const ImdClient&) = delete;
-    // Tells the engine what `disconnect` would, as far as that is possible without waiting.
+    // Disconnects as far as possible without waiting.
     ~ImdClient();
 
     void connect(double now_s);
@@ -78,17 +78,17 @@ public:
     void disconnect(double now_s);
 
     ImdState state() const noexcept { return state_; }
-    // One sentence of the state, in lower case without a full stop.
+    // The state as one sentence, lower case, no full stop.
     const std::string& why() const noexcept { return why_; }
-    // Of one that cannot be connected to any more, what came before.
+    // The cause; if it cannot be connected to any more, the earlier cause.
     ImdLack lack() const noexcept { return phase_ == Phase::Greeting ? ImdLack::Handshake : lack_; }
-    // How many atoms it sends, where their number is what is wrong; else 0.
+    // The number of atoms that it sends if that is wrong; else 0.
     std::size_t other_atoms() const noexcept { return decoder_.other_atoms(); }
     // The newest one, also once the engine was lost; null before the first.
     const ImdFrame* frame() const noexcept { return frames_ == 0 ? nullptr : &frame_; }
-    std::uint64_t frames() const noexcept { return frames_; }  // that came whole
+    std::uint64_t frames() const noexcept { return frames_; }  // number of complete frames
     int version() const noexcept { return decoder_.version(); }
-    // What frames of version 3 have.
+    // Content of frames in version 3.
     const ImdSession& session() const noexcept { return session_; }
 
     // Replaces all forces of this client: kcal/mol/Å, one per atom, atoms from 0 and each once.
@@ -97,12 +97,13 @@ public:
     // newest stand in for older ones.
     std::string pull(std::span<const std::int32_t> atoms, std::span<const Vec3> forces);
     void let_go();
-    std::uint64_t pulls_sent() const noexcept { return pulls_sent_; }  // that were not all let go
+    // Number of pulls sent, without releases.
+    std::uint64_t pulls_sent() const noexcept { return pulls_sent_; }
 
     void pause() noexcept { is_paused_ = true; }
     void resume() noexcept { is_paused_ = false; }
     bool is_paused() const noexcept { return is_paused_; }
-    // Steps between frames; less than 1 for the engine's own.
+    // Steps between frames; less than 1 for the engine's default.
     void set_rate(int rate) noexcept { rate_ = rate; }
 
 private:
@@ -136,7 +137,8 @@ private:
     ImdState state_ = ImdState::Closed;
     std::string why_ = "no engine is connected to", loss_;
     ImdLack lack_ = ImdLack::Answer;
-    double now_s_ = 0, since_s_ = 0;  // of the last call; since the phase began or a frame came
+    double now_s_ = 0,
+           since_s_ = 0;  // time of the last call; since the phase began or a frame arrived
     bool has_input_ = false, has_room_ = false;
 
     Socket socket_;
@@ -147,12 +149,12 @@ private:
     std::uint64_t frames_ = 0, frames_of_session_ = 0;
 
     ImdBytes outgoing_;
-    std::size_t sent_ = 0;              // of those
-    std::optional<Pull> pull_;          // not yet among them
+    std::size_t sent_ = 0;              // bytes already sent
+    std::optional<Pull> pull_;          // pull not yet in `outgoing_`
     std::vector<std::int32_t> pulled_;  // what the engine pulls, or will by outgoing_
     std::uint64_t pulls_sent_ = 0;
-    bool is_paused_ = false, was_paused_ = false;  // asked for, and sent
-    bool was_paused_at_check_ = false;             // at the last poll
+    bool is_paused_ = false, was_paused_ = false;  // requested, and sent
+    bool was_paused_at_check_ = false;             // state at the last poll
     int rate_, sent_rate_ = 0;
 };
 

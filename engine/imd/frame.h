@@ -17,7 +17,7 @@ namespace palpa {
 // are Å everywhere.
 struct ImdUnits {
     double energy = 1;
-    double force = 1;  // of clients and, in version 3, of frames
+    double force = 1;  // forces of clients and, in version 3, of frames
 };
 
 inline constexpr double kilojoule_per_kcal = units::joule_per_kcal / 1000;
@@ -29,7 +29,7 @@ inline constexpr ImdUnits imd_units_of_namd{};
 // which it converts, and energies its own, kJ/mol. So do runs of GROMACS 2022.5: 1 kcal/mol/Å on an
 // atom of 40 amu gives it 10.46 Å/ps^2.
 inline constexpr ImdUnits imd_units_of_gromacs{.energy = kilojoule_per_kcal};
-// Version 3 as it is documented.
+// Version 3 as documented.
 inline constexpr ImdUnits imd_units_of_version_3{.energy = kilojoule_per_kcal,
                                                  .force = kilojoule_per_kcal};
 
@@ -48,12 +48,12 @@ struct ImdFrame {
     std::optional<std::int64_t> find_step() const noexcept;
 };
 
-// Gathers the messages of a frame.
+// Assembles a frame from messages.
 class ImdFrameBuilder {
 public:
     explicit ImdFrameBuilder(const ImdUnits& units) : units_(units) {}
 
-    // True where the frame is complete; it then stands in `frame` and the next one begins.
+    // Returns true if the frame is complete; it is then in `frame`, and the next one begins.
     bool add(const ImdMessage& message, ImdFrame& frame);
 
 private:
@@ -66,7 +66,7 @@ private:
 void add_imd_frame(ImdBytes& bytes, int version, std::endian order, const ImdSession& session,
                    const ImdUnits& units, const ImdFrame& frame);
 
-// Forces of clients in kcal/mol/Å to numbers on the wire.
+// Converts forces of clients from kcal/mol/Å to the units of the connection.
 std::vector<float> to_imd_forces(std::span<const Vec3> forces, const ImdUnits& units);
 
 }  // namespace palpa

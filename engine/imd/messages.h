@@ -40,10 +40,10 @@ enum class ImdType : std::int32_t {
     Wait,          // from a client: 0, the engine goes on without clients
 };
 
-// As a sentence has it, "coordinates"; "type 99" where there is none.
+// The name for messages, "coordinates"; "type 99" for unknown types.
 std::string imd_name(ImdType type);
 
-// A client's default; also of GROMACS and VMD.
+// Default port of clients, as in GROMACS and VMD.
 inline constexpr std::uint16_t imd_port = 8888;
 
 struct ImdEnergies {
@@ -67,36 +67,37 @@ struct ImdTime {
 // Edges a, b and c of the periodic cell, three numbers each, Å.
 using ImdBox = std::array<float, 9>;
 
-// What each frame of a session has, in this order.
+// The content of each frame of a session, in this order.
 struct ImdSession {
     bool time = false;
     bool energies = false;
     bool box = false;
     bool coordinates = false;
-    bool is_wrapped = false;  // coordinates are put back into the box
+    bool is_wrapped = false;  // coordinates are wrapped into the box
     bool velocities = false;
     bool forces = false;
 
     bool operator==(const ImdSession&) const = default;
 };
 
-// One message. What a type does not have is as the message before left it.
+// One message. Fields that its type does not have keep their previous values.
 struct ImdMessage {
     ImdType type = ImdType::Disconnect;
-    std::int32_t number = 0;       // version, rate, wait; else the length
-    bool completes_frame = false;  // the last one of its frame; in version 2, coordinates
+    std::int32_t number = 0;  // version, rate, wait; else the length
+    bool completes_frame =
+        false;  // whether it is the last one of its frame; in version 2, coordinates
     ImdEnergies energies;
     ImdTime time;
     ImdBox box{};
     ImdSession session;
-    std::vector<std::int32_t> atoms;  // of client forces, from 0, each at most once
+    std::vector<std::int32_t> atoms;  // atoms of client forces, from 0, each at most once
     std::vector<float> values;  // x, y, z per atom: coordinates, velocities, forces, client forces
 };
 
-// What is believed of the other end.
+// Limits for what the other end may send.
 struct ImdLimits {
-    std::size_t atoms = 0;              // that it has; 0: as many as its first message with atoms
-    std::size_t max_atoms = 1'000'000;  // that it may have
+    std::size_t atoms = 0;              // its number of atoms; 0: from its first message with atoms
+    std::size_t max_atoms = 1'000'000;  // largest number of atoms
 };
 
 // Farther out, Å, or stronger, in the wire's unit, nothing is believed.
@@ -110,27 +111,27 @@ inline constexpr float imd_strongest_pull = 1e6F;
 // come, whatever a header promises.
 class ImdDecoder {
 public:
-    // Of what an engine sends; its handshake says version and byte order.
+    // Decodes what an engine sends; its handshake gives version and byte order.
     static ImdDecoder of_engine(const ImdLimits& limits);
-    // Of what a client sends to an engine of `version` 2 or 3 and that byte order, with
+    // Decodes what a client sends to an engine of `version` 2 or 3 with this byte order and
     // `limits.atoms` atoms.
     static ImdDecoder of_client(int version, std::endian order, const ImdLimits& limits);
 
     // Takes bytes to the end of the next message at most; how many. `message` stands until then.
     std::size_t take(std::span<const std::byte> bytes);
-    // That the last call completed; null where it did not.
+    // The message completed by the last call, or null.
     const ImdMessage* message() const noexcept { return is_whole_ ? &message_ : nullptr; }
-    // What came, and what was expected; empty while all is well.
+    // What was received and what was expected; empty if there is no error.
     const std::string& problem() const noexcept { return problem_; }
 
-    // Of an engine: 0 before its handshake.
+    // Version of an engine; 0 before its handshake.
     int version() const noexcept { return version_; }
     std::endian order() const noexcept { return order_; }
-    // 0 until a message or the limits give them.
+    // Number of atoms; 0 until a message or the limits give it.
     std::size_t atoms() const noexcept { return limits_.atoms; }
-    // How many the coordinates had that were refused for their number; 0 where none were.
+    // Number of atoms of coordinates that were refused for it; else 0.
     std::size_t other_atoms() const noexcept { return other_atoms_; }
-    // Of an engine: that "go" may be sent. In version 3 the session has come too.
+    // For an engine: whether "go" may be sent. In version 3 the session has arrived too.
     bool is_ready() const noexcept { return is_ready_; }
     // Where a stream that ends now would be cut: "inside a 'coordinates' message, after 12 of 36
     // bytes", or "between two messages".
@@ -154,10 +155,10 @@ private:
     int version_ = 0;
     std::endian order_ = std::endian::native;
     bool is_ready_ = false;           // of an engine: see above; of a client: it has said Go
-    std::vector<ImdType> announced_;  // what a frame of version 3 has, in order
-    std::size_t next_ = 0;            // of those
+    std::vector<ImdType> announced_;  // content of a frame of version 3, in order
+    std::size_t next_ = 0;            // next of them
 
-    std::vector<std::byte> bytes_;  // of the header or body that is coming
+    std::vector<std::byte> bytes_;  // bytes of the incomplete header or body
     bool is_in_body_ = false;
     std::size_t body_size_ = 0;
 
@@ -168,7 +169,7 @@ private:
 
 using ImdBytes = std::vector<std::byte>;
 
-// Each adds one message. `order` is the engine's, whoever writes.
+// Each appends one message. `order`: byte order of the engine.
 void add_imd_handshake(ImdBytes& bytes, int version, std::endian order);
 void add_imd_session(ImdBytes& bytes, const ImdSession& session);
 void add_imd_energies(ImdBytes& bytes, std::endian order, const ImdEnergies& energies);
@@ -180,7 +181,7 @@ void add_imd_vectors(ImdBytes& bytes, std::endian order, ImdType type,
 // `values` has three numbers for each of `atoms`.
 void add_imd_client_forces(ImdBytes& bytes, std::endian order, std::span<const std::int32_t> atoms,
                            std::span<const float> values);
-// One without a body: Disconnect, Go, Kill, Pause, Rate, Resume, Wait.
+// A message without a body: Disconnect, Go, Kill, Pause, Rate, Resume, Wait.
 void add_imd_command(ImdBytes& bytes, ImdType type, std::int32_t number = 0);
 
 }  // namespace palpa

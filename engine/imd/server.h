@@ -22,19 +22,19 @@
 namespace palpa {
 
 struct ImdServerOptions {
-    // Of this machine alone, unless another address is given. There is no password: who reaches the
-    // port can watch and pull.
+    // Address to listen at; the default admits clients on this machine only. There is no password:
+    // everyone who can reach the port can watch and pull.
     std::string address = "127.0.0.1";
-    std::uint16_t port = imd_port;  // 0: any that is free
+    std::uint16_t port = imd_port;  // 0: any free port
     int version = 2;                // or 3
-    ImdSession session{};           // of version 3; coordinates are always sent
+    ImdSession session{};           // for version 3; coordinates are always sent
     std::size_t atoms = 0;
     std::size_t max_clients = 4;      // 60 at most
-    int rate = 1;                     // steps between frames, until a client asks for another
-    std::optional<ImdUnits> units{};  // of the wire; nothing: imd_units_of(version)
+    int rate = 1;                     // steps between frames, until a client requests others
+    std::optional<ImdUnits> units{};  // units of the connection; unset: imd_units_of(version)
     bool may_pull = true, may_pause = true, may_kill = false;
-    double go_within_s = 1;     // after the handshake, as the protocol has it
-    double stuck_after_s = 10;  // a client that takes nothing of what is sent to it
+    double go_within_s = 1;     // s after the handshake, by the protocol
+    double stuck_after_s = 10;  // s after which a client that receives nothing is dropped
 };
 
 // kcal/mol/Å, one per atom; each atom once.
@@ -49,47 +49,48 @@ public:
     ImdServer(const ImdServer&) = delete;
     ImdServer& operator=(const ImdServer&) = delete;
 
-    // Why it does not listen; empty where it does.
+    // Why it cannot listen; empty if it does.
     const std::string& problem() const noexcept { return problem_; }
     std::uint16_t port() const noexcept { return listening_.find_port(); }
 
-    // Takes new clients and what clients say, and writes on. Waits for at most so long, and returns
-    // early where something came.
+    // Accepts clients, reads and writes. Waits at most `at_most_ms`, and returns early if something
+    // arrived.
     void poll(double now_s, int at_most_ms);
 
-    // Frames have another number of atoms from now on, which no message can tell: who is here is
-    // dropped, and may come back.
+    // Changes the number of atoms. IMD has no message for this, so clients are dropped and may
+    // reconnect.
     void change_atoms(std::size_t atoms);
 
-    // To be called once a step: whether a client is due for a frame.
+    // Call once a step: whether a frame is due for a client.
     bool count_step();
     // To all that are due. A client that has not yet taken its last frame goes without this one. A
     // frame of another number of atoms, or with numbers that are not finite, is not sent.
     void send(const ImdFrame& frame);
 
-    // What acts now: the newest forces of the first client that has sent some, none once it has
-    // left or was dropped. While it is there the others watch, and their forces are not taken.
+    // The present forces: the newest ones of the first client that sent some; none after it left.
+    // Meanwhile other clients can only watch.
     const ImdPull& pull() const noexcept { return pull_; }
-    // By the client that pulls, or by any where none does; over when that client leaves.
+    // Whether the pulling client (or any, if none pulls) has paused; ends when it leaves.
     bool is_paused() const noexcept { return pauser_ != 0; }
-    bool is_killed() const noexcept { return is_killed_; }  // by the same, where it may
-    std::size_t clients() const noexcept;                   // that have sent "go"
+    // Whether such a client ended the engine, if allowed.
+    bool is_killed() const noexcept { return is_killed_; }
+    std::size_t clients() const noexcept;  // number of clients that have sent "go"
     std::uint64_t frames_skipped() const noexcept { return frames_skipped_; }
-    // One sentence each on who came, left, was dropped or not heard, since the last call; of many
-    // the newest 100.
+    // Notes since the last call, one sentence each, on clients that came, left, were dropped or
+    // ignored; the newest 100.
     std::vector<std::string> take_notes();
 
 private:
     struct Client {
-        std::uint64_t number = 0;  // from 1, in the order of their coming
+        std::uint64_t number = 0;  // number of the client, from 1
         Socket socket;
         ImdDecoder decoder;
         ImdBytes outgoing;
         std::size_t sent = 0;     // of those
-        double since_s = 0;       // it came, or last took bytes
-        bool has_gone = false;    // it said Go
-        int rate = 1, steps = 0;  // since its last frame
-        bool was_noted = false;   // that what it asks for is not done
+        double since_s = 0;       // time of its arrival or last transfer
+        bool has_gone = false;    // it has sent "go"
+        int rate = 1, steps = 0;  // its rate; steps since its last frame
+        bool was_noted = false;   // a note on its refused request was made
         bool is_over = false;
     };
 

@@ -1,4 +1,4 @@
-// A run of GROMACS: every file that it needs, as text.
+// Writes the input files of a GROMACS run, as text.
 #pragma once
 #include "core/files.h"
 #include "inputs/run_system.h"
@@ -24,18 +24,18 @@ namespace palpa {
 // row, or of maps of different sizes.
 std::vector<TextFile> format_gromacs(const RunSystem& system, const EngineRunOptions& options);
 
-// The places of the atoms in system.gro, Å.
+// The positions of the atoms in system.gro, Å.
 std::vector<Vec3> gromacs_positions(const RunSystem& system);
 
-// Å; of a box that has room for a cutoff.
+// Shortest box edge with room for a cutoff, Å.
 inline constexpr double shortest_gromacs_edge = 10;
 
 // Å; from where Lennard-Jones forces are switched off, and where all pairs end.
 struct Cutoff {
     double from, to;
 };
-// CHARMM36's, or what half of the box's shortest edge has room for. Throws LoadError where that is
-// nothing.
+// The cutoff of CHARMM36, or a shorter one for half of the shortest box edge. Throws LoadError if
+// the box is too small.
 Cutoff gromacs_cutoff(const RunSystem& system);
 
 }  // namespace palpa

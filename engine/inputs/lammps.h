@@ -1,4 +1,4 @@
-// A run of LAMMPS: every file that it needs, as text.
+// Writes the input files of a LAMMPS run, as text.
 #pragma once
 #include "core/files.h"
 #include "inputs/run_system.h"

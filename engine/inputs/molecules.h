@@ -1,4 +1,4 @@
-// Which atoms of a system are one molecule, and which molecules are alike.
+// Finds the molecules of a system, and which of them are equal.
 #pragma once
 #include "charmm/topology.h"
 #include "inputs/run_system.h"
@@ -12,14 +12,14 @@
 
 namespace palpa {
 
-// Which molecule each atom is of: atoms with bonds or other terms between them are of one.
-// Molecules are numbered in the order of their first atoms.
+// The molecule of each atom: atoms with bonds or other terms between them belong together.
+// Molecules are numbered by their first atoms.
 std::vector<std::uint32_t> find_molecules(const Topology& topology);
 
-// Of a system in the order of `in_run_order`: where its molecules are.
+// The molecules of a system in the order of `in_run_order`.
 std::vector<AtomRange> list_molecules(const Topology& topology);
 
-// What stands in the topology about one molecule, atoms numbered from its first.
+// The terms of one molecule; atoms are numbered from its first.
 struct MoleculeTerms {
     AtomRange atoms;
     std::vector<Bond> bonds;
@@ -32,12 +32,12 @@ struct MoleculeTerms {
 };
 std::vector<MoleculeTerms> split_molecules(const Topology& topology);
 
-// Of a hydrogen, by its mass.
+// Whether an atom is hydrogen, by its mass.
 bool is_hydrogen(double mass) noexcept;
 
-// A molecule of an oxygen and then two hydrogens that are bonded to it.
+// A water: an oxygen, then two hydrogens bonded to it.
 struct RigidWater {
-    double oh, hh;  // distances at rest, Å
+    double oh, hh;  // equilibrium distances, Å
 };
 std::optional<RigidWater> find_rigid_water(const RunSystem& system, const MoleculeTerms& molecule);
 

@@ -1,4 +1,4 @@
-// A system as another engine runs it: every atom, every term, and the box.
+// A system for a run by another engine: all atoms, all terms, and the box.
 #pragma once
 #include "charmm/topology.h"
 #include "core/units.h"
@@ -15,14 +15,14 @@ namespace palpa {
 struct RunSystem {
     std::string title;            // one line
     Connectivity connectivity;    // of all atoms
-    Topology topology;            // likewise, in the same order
+    Topology topology;            // of all atoms, in the same order
     std::vector<Vec3> positions;  // Å
-    std::optional<Vec3> box;      // edges along x, y, z, Å; none: vacuum
+    std::optional<Vec3> box;      // edges along x, y, z, Å; unset: vacuum
     double coulomb_constant = units::charmm_coulomb_constant;  // kcal Å/mol/e^2
 };
 
 struct EngineRunOptions {
-    std::uint16_t port = 8888;  // on which the engine waits for a client
+    std::uint16_t port = 8888;  // port where the engine waits for a client
     // Atoms that the engine sends and the client may pull, by index in the order of the files,
     // rising; empty: all.
     std::vector<std::uint32_t> sent;
@@ -30,7 +30,7 @@ struct EngineRunOptions {
     // fs; without it 2, where bonds to hydrogen and waters are rigid, and 1 where all is flexible.
     std::optional<double> timestep;
     bool flexible = false;
-    std::int64_t steps = -1;  // -1: until the client ends it
+    std::int64_t steps = -1;  // -1: until the client ends the run
 };
 
 double timestep_of(const EngineRunOptions& options) noexcept;  // fs
@@ -40,7 +40,7 @@ double timestep_of(const EngineRunOptions& options) noexcept;  // fs
 // atoms, implicit water, positions that are not finite, a box with an edge that is not positive.
 RunSystem in_run_order(const RunSystem& system);
 
-// Of the positions, Å.
+// The range of the positions, Å.
 struct Extent {
     Vec3 low, high;
 
@@ -53,7 +53,7 @@ Extent find_extent(const std::vector<Vec3>& positions);
 // there, nor after some expansion. In vacuum engines sum all pairs so.
 double find_reach(const std::vector<Vec3>& positions);
 
-// What is the matter with a system that runs all the same, in sentences.
+// Warnings about a system that can be run all the same, as sentences.
 std::vector<std::string> list_warnings(const RunSystem& system);
 
 }  // namespace palpa

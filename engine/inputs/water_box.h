@@ -1,4 +1,4 @@
-// A box of water, made from nothing, around a molecule or none.
+// Builds a box of water, with or without a molecule in it.
 #pragma once
 #include "charmm/force_field.h"
 #include "math/vec.h"
@@ -11,16 +11,16 @@
 namespace palpa {
 
 struct WaterBoxSettings {
-    std::size_t cells = 3;    // of eight waters, along each edge, before any are left out
-    double density = 0.0334;  // molecules/Å^3, of water at 300 K
-    // Å, of a water's oxygen to the molecule's hydrogens and to its other atoms.
+    std::size_t cells = 3;    // cells of eight waters along each edge, before removal
+    double density = 0.0334;  // molecules/Å^3, as water at 300 K
+    // Smallest distances of a water's oxygen to the molecule's hydrogens and heavy atoms, Å.
     double closest_hydrogen = 1.8, closest_heavy = 2.6;
     std::uint64_t seed = 1;
 };
 
 struct WaterBox {
-    Connectivity connectivity;    // the molecule's atoms, then waters, segments WAT, WAT1, ...
-    std::vector<Vec3> positions;  // Å, 0 to edge but for what sticks out
+    Connectivity connectivity;    // the molecule's atoms, then waters in segments WAT, WAT1, ...
+    std::vector<Vec3> positions;  // Å, from 0 to edge, except for parts that stick out
     double edge = 0;              // Å
     std::size_t waters = 0;
 };

@@ -1,4 +1,4 @@
-// Hydrogens of a molecule that is known by its heavy atoms, and what is charged at pH 7.4.
+// Adds hydrogens to a molecule of heavy atoms, with charges at pH 7.4.
 #pragma once
 #include "ligands/graph.h"
 

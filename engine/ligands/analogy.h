@@ -1,4 +1,4 @@
-// Bonded parameters that a force field lacks, taken from those of the most alike types.
+// Finds missing bonded parameters by analogy: it takes those of the most similar types.
 #pragma once
 #include "charmm/force_field.h"
 #include "ligands/type_traits.h"
@@ -10,7 +10,7 @@
 
 namespace palpa {
 
-// What a residue is made of, by index: the terms that its bonds make, and impropers.
+// The terms of a residue by atom index: those from its bonds, and impropers.
 struct ResidueTerms {
     std::vector<std::vector<std::uint32_t>> bonds, angles, dihedrals, impropers;
 };
@@ -19,16 +19,16 @@ ResidueTerms find_terms(const MoleculeGraph& graph,
 
 enum class TermKind : std::uint8_t { Bond, Angle, Dihedral, Improper };
 
-// One entry that is not the force field's.
+// One parameter found by analogy.
 struct Analogy {
     TermKind kind = TermKind::Bond;
-    std::vector<std::string> types;    // what it is for
-    std::vector<std::string> from;     // what its numbers are of
+    std::vector<std::string> types;    // types that need it
+    std::vector<std::string> from;     // types from which it was taken
     std::vector<std::uint32_t> atoms;  // the first term that needs it
     double penalty = 0;  // the weighted distance of the types; that of inner atoms counts most
 };
 
-// Above this a dihedral says little about the barrier of its bond.
+// Above this penalty a dihedral says little about the barrier of its bond.
 inline constexpr double high_penalty = 40;
 
 // Adds what is missing for the terms. What has no likeness at all (penalty of TypeDistances::unlike

@@ -1,5 +1,5 @@
-// A residue with CGenFF's types, charges and parameters for a molecule that no force field has:
-// approximately, by likeness to the residues that there are.
+// Makes an approximate residue for a molecule without parameters: types, charges and parameters of
+// CGenFF by similarity to known residues.
 #pragma once
 #include "charmm/force_field.h"
 #include "ligands/analogy.h"
@@ -17,7 +17,7 @@
 
 namespace palpa {
 
-// What is learnt once from a force field's residues.
+// The model, built once from a force field's residues.
 struct LigandModel {
     std::vector<ModelCompound> compounds;
     TypeLibrary types;
@@ -25,22 +25,21 @@ struct LigandModel {
     TypeDistances distances;
 };
 
-// Residues named in `withheld` are not looked at. Throws LoadError where the force field has none
-// of CGenFF's residues.
+// Residues in `withheld` are ignored. Throws LoadError if the force field has no CGenFF residues.
 LigandModel build_ligand_model(const ForceField& force_field,
                                const std::vector<std::string>& withheld = {});
 
 struct ApproximateLigand {
-    std::string name;    // of the residue
-    std::string source;  // where bond orders and hydrogens are from, a phrase
+    std::string name;    // name of the residue
+    std::string source;  // source of bond orders and hydrogens, a phrase
     MoleculeGraph graph;
-    std::vector<TypeChoice> types;  // of each atom
+    std::vector<TypeChoice> types;  // one for each atom
     std::vector<double> charges;    // e
     Residue residue;
     std::vector<Analogy> analogies;
     // Bonds that could turn, but about which a dihedral of high penalty acts.
     std::vector<std::array<std::uint32_t, 2>> doubtful_turns;
-    std::vector<std::string> notes;  // what was decided on the way, a sentence each
+    std::vector<std::string> notes;  // decisions, one sentence each
 };
 
 // Types and charges of a molecule with all its hydrogens, names unique. Adds the residue, and the
@@ -49,13 +48,13 @@ struct ApproximateLigand {
 ApproximateLigand approximate_ligand(const MoleculeGraph& graph, const LigandModel& model,
                                      ForceField& into);
 
-// The residue and the added parameters as a CHARMM stream file, penalties in comments.
+// The residue and the added parameters as a CHARMM stream file, with penalties in comments.
 std::string format_stream(const ApproximateLigand& ligand, const ForceField& force_field);
 
-// Lines for a report: a summary, what is doubtful, and a table of atoms.
+// Lines for a report: a summary, uncertain parts, and a table of atoms.
 std::vector<std::string> describe(const ApproximateLigand& ligand);
 
-// What helps: where real parameters come from.
+// Advice: where to get parameters of the CGenFF program.
 inline constexpr std::string_view real_parameters_advice =
     "for real parameters send the molecule to the CGenFF server (cgenff.com) and give its stream "
     "file with --parameters";

@@ -23,12 +23,13 @@ class ChargeModel {
 public:
     explicit ChargeModel(std::span<const ModelCompound> compounds);
 
-    // Of each atom, e. They add up to the sum of the formal charges to the last of three decimals.
+    // The charge of each atom, e. They add up to the sum of the formal charges, exactly to three
+    // decimals.
     std::vector<double> charges_of(const MoleculeGraph& graph, const Perceived& seen,
                                    const std::vector<EnvironmentKeys>& keys,
                                    const std::vector<std::string>& types) const;
 
-    // Whether residues have a bond of these types.
+    // Whether residues have a bond between these types.
     bool has_bond(const std::string& a, const std::string& b) const;
 
 private:

@@ -1,4 +1,4 @@
-// Bonds of a residue as CIF files tell them: the tables _chem_comp_atom and _chem_comp_bond of an
+// Reads bonds of a residue from CIF files: the tables _chem_comp_atom and _chem_comp_bond of an
 // entry, of the Chemical Component Dictionary and of monomer libraries.
 #pragma once
 #include "ligands/sdf.h"

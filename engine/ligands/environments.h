@@ -1,5 +1,4 @@
-// What an atom of a molecule sees around it, as keys that are equal for atoms of equal
-// surroundings.
+// Describes the surroundings of an atom by keys that are equal for equal surroundings.
 #pragma once
 #include "ligands/graph.h"
 #include "ligands/perception.h"

@@ -1,4 +1,4 @@
-// Lines of a small molecule's file, and what words of them say.
+// Reads the lines of a small molecule's file and parses their words.
 #pragma once
 #include "formats/lines.h"
 #include "ligands/graph.h"
@@ -14,7 +14,7 @@ class FileLines {
 public:
     FileLines(std::string_view text, const std::string& file) : lines_(text), file_(file) {}
 
-    // The present line, and the next one; `what`: what was expected where the file ends.
+    // The present line, and the next one. `what`: what is missing if the file ends here.
     std::string_view line() const noexcept { return lines_.line(); }
     bool at_end() const noexcept { return lines_.at_end(); }
     std::size_t number() const noexcept { return lines_.number(); }

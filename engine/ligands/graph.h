@@ -12,15 +12,15 @@
 namespace palpa {
 
 struct GraphAtom {
-    std::string name;              // unique in the molecule; empty where the file names none
+    std::string name;              // unique in the molecule; empty if the file has none
     std::string element;           // in upper case, "C", "CL"
-    int charge = 0;                // formal, e
+    int charge = 0;                // formal charge, e
     std::optional<Vec3> position;  // Å
 };
 
 struct GraphBond {
     std::uint32_t a, b;
-    int order = 1;  // 1 to 3; Kekulé's form of what is aromatic
+    int order = 1;  // 1 to 3; Kekulé form for aromatic bonds
 };
 
 struct MoleculeGraph {
@@ -32,10 +32,10 @@ struct MoleculeGraph {
     bool is_hydrogen(std::size_t atom) const noexcept { return atoms[atom].element == "H"; }
 };
 
-// What bounds the time of all that follows; the largest ligands have some 300 atoms.
+// Limit of atoms, which bounds the computing time; the largest ligands have about 300 atoms.
 inline constexpr std::size_t most_ligand_atoms = 1000;
 
-// For each atom the bonds that it has, as indices into `bonds`.
+// For each atom its bonds, as indices into `bonds`.
 using BondLists = std::vector<std::vector<std::uint32_t>>;
 BondLists bonds_of_atoms(const MoleculeGraph& graph);
 
@@ -47,7 +47,7 @@ inline std::uint32_t other_end(const GraphBond& bond, std::uint32_t atom) noexce
 // The sum of the formal charges, e.
 int total_charge(const MoleculeGraph& graph);
 
-// Without those atoms that are marked, and their bonds.
+// The molecule without the marked atoms and their bonds.
 MoleculeGraph without_atoms(const MoleculeGraph& graph, const std::vector<bool>& left_out);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// Which atom of one description of a molecule is which of another.
+// Matches the atoms of two descriptions of a molecule.
 #pragma once
 #include "ligands/graph.h"
 

@@ -1,5 +1,5 @@
-// The molecules that a force field has residues for: what types, charges and impropers of unknown
-// ones are learnt from.
+// The model compounds of a force field, from which types, charges and impropers of unknown
+// molecules are derived.
 #pragma once
 #include "charmm/force_field.h"
 #include "ligands/environments.h"
@@ -18,10 +18,10 @@ struct ModelCompound {
     std::string name;
     MoleculeGraph graph;
     Perceived seen;
-    std::vector<EnvironmentKeys> keys;  // of each atom, as the rest
+    std::vector<EnvironmentKeys> keys;  // one for each atom, as all arrays here
     std::vector<std::string> types;
     std::vector<double> charges;     // e
-    std::vector<bool> has_improper;  // it is the first atom of one
+    std::vector<bool> has_improper;  // whether it is the first atom of an improper
 };
 
 // The element of a type of CGenFF, by its name: "C" of "CG331", "CL" of "CLGR1". Empty: it is none.
@@ -33,7 +33,7 @@ std::string_view element_of_cgenff_type(std::string_view type) noexcept;
 std::optional<ModelCompound> find_model_compound(const ForceField& force_field,
                                                  const std::string& name);
 
-// All of them, in the order of their names, but for those `withheld`.
+// All model compounds in the order of their names, except `withheld`.
 std::vector<ModelCompound> find_model_compounds(const ForceField& force_field,
                                                 const std::vector<std::string>& withheld = {});
 

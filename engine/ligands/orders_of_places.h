@@ -1,4 +1,4 @@
-// Bonds and their orders from where atoms are: the last resort.
+// Finds bonds and bond orders from atomic positions: the last resort.
 #pragma once
 #include "ligands/graph.h"
 

@@ -1,5 +1,5 @@
-// What of a molecule's bonds makes a difference for its types: rings, aromaticity, and charges and
-// orders that resonance shares out.
+// Perceives the features of a molecule that matter for types: rings, aromaticity, and charges and
+// orders that resonance distributes.
 #pragma once
 #include "ligands/graph.h"
 
@@ -13,7 +13,7 @@ enum class BondKind : std::uint8_t {
     Single,
     Double,
     Triple,
-    Aromatic,   // in a ring of 4n + 2 pi electrons
+    Aromatic,   // in a ring with 4n + 2 pi electrons
     Resonance,  // to the ends of carboxylates, phosphates, nitro groups; of amidinium and
                 // guanidinium
 };
@@ -26,9 +26,9 @@ std::vector<std::vector<std::uint32_t>> find_rings(const MoleculeGraph& graph);
 struct Perceived {
     BondLists bonds;                                // of each atom
     std::vector<BondKind> kinds;                    // of each bond
-    std::vector<std::vector<std::uint32_t>> rings;  // atoms in their order
+    std::vector<std::vector<std::uint32_t>> rings;  // atoms of each ring in order
     std::vector<bool> ring_is_aromatic;
-    std::vector<std::array<bool, largest_ring + 1>> in_ring_of;  // by size, of each atom
+    std::vector<std::array<bool, largest_ring + 1>> in_ring_of;  // ring sizes of each atom
     std::vector<bool> is_aromatic;                               // of each atom
     std::vector<bool> bond_in_ring;                              // of each bond
     std::vector<double> charge;  // of each atom, e; formal, equal among what resonance makes equal

@@ -1,4 +1,4 @@
-// Molecules of SDF and MOL files, version V2000 and V3000, and of MOL2 files.
+// Reads molecules from SDF and MOL files, version V2000 and V3000, and from MOL2 files.
 #pragma once
 #include "ligands/graph.h"
 
@@ -9,11 +9,11 @@
 
 namespace palpa {
 
-// A molecule as a file has it.
+// A molecule of a file.
 struct LigandFile {
-    MoleculeGraph graph;          // hydrogens only where the file has them
+    MoleculeGraph graph;          // hydrogens only if the file has them
     bool names_atoms = false;     // MOL2
-    bool states_charges = false;  // some formal charge is not 0
+    bool states_charges = false;  // whether a formal charge is not 0
     // Bonds that the file calls aromatic (or whose order it leaves open); their order is 1.
     std::vector<bool> open_bonds;
 };
@@ -23,10 +23,10 @@ struct LigandFile {
 // number, a file that ends early, more than `most_ligand_atoms` atoms.
 LigandFile parse_sdf(std::string_view text, const std::string& file);
 
-// The first @<TRIPOS>MOLECULE, likewise.
+// The first @<TRIPOS>MOLECULE of a MOL2 file, likewise.
 LigandFile parse_mol2(std::string_view text, const std::string& file);
 
-// By the name's ending: .sdf, .mol and .mol2.
+// Reads a file by the ending of its name: .sdf, .mol or .mol2.
 LigandFile read_ligand_file(const std::filesystem::path& path);
 
 }  // namespace palpa

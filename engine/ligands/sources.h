@@ -1,5 +1,5 @@
-// Where a ligand's bond orders and hydrogens come from: a file of its own, the entry, a monomer
-// library, its hydrogens, or where its atoms are.
+// Finds bond orders and hydrogens of a ligand: from its own file, the entry, a monomer library, its
+// hydrogens, or its positions.
 #pragma once
 #include "ligands/graph.h"
 
@@ -14,7 +14,7 @@ namespace palpa {
 struct LigandQuery {
     MoleculeGraph found;  // the residue's atoms in the structure, without bonds
     std::vector<std::filesystem::path> files;  // --ligand
-    std::filesystem::path entry;               // a .cif is asked for chem_comp tables
+    std::filesystem::path entry;               // a .cif is searched for chem_comp tables
     // Folders with a/ATP.cif in them: CCP4's monomer library.
     std::vector<std::filesystem::path> libraries;
 };
@@ -24,10 +24,10 @@ struct FoundLigand {
                           // the structure has them
     std::string source;
     std::vector<std::string> notes;
-    std::optional<std::filesystem::path> file;  // of those given, that it is from
+    std::optional<std::filesystem::path> file;  // the given file that was used
 };
 
-// $CLIBD_MON where it is set, and where Debian's refmac-dictionary is.
+// $CLIBD_MON if it is set, and the folder of Debian's refmac-dictionary.
 std::vector<std::filesystem::path> monomer_libraries();
 
 // The first of these that fits the residue's heavy atoms: the files, the residue's own hydrogens if

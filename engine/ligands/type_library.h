@@ -1,5 +1,5 @@
-// Which type of CGenFF an atom gets: that of the atoms with the most alike surroundings in the
-// force field's own residues.
+// Chooses the CGenFF type of an atom: that of the atoms with the most similar surroundings in the
+// force field's residues.
 #pragma once
 #include "ligands/environments.h"
 #include "ligands/model_compounds.h"
@@ -16,24 +16,24 @@ namespace palpa {
 
 struct TypeChoice {
     std::string type;
-    Surroundings level = Surroundings::Element;  // at which surroundings were equal
-    double share = 1;                            // of such atoms in the force field that have it
-    std::string example;                         // a residue with such an atom
-    double penalty = 0;                          // rises as the level falls and the share does
-    bool has_improper = false;                   // most of such atoms are the first of an improper
+    Surroundings level = Surroundings::Element;  // level at which the surroundings were equal
+    double share = 1;           // share of such atoms in the force field with this type
+    std::string example;        // a residue with such an atom
+    double penalty = 0;         // larger for a lower level and share
+    bool has_improper = false;  // most such atoms are the first of an improper
 };
 
 class TypeLibrary {
 public:
     explicit TypeLibrary(std::span<const ModelCompound> compounds);
 
-    // None for an element that no residue has.
+    // Unset for an element that no residue has.
     std::optional<TypeChoice> find(const EnvironmentKeys& keys) const;
 
 private:
     struct Entry {
-        std::map<std::string, std::uint32_t> types;   // how many atoms have it
-        std::map<std::string, std::string> examples;  // the first residue with it
+        std::map<std::string, std::uint32_t> types;   // number of atoms with each type
+        std::map<std::string, std::string> examples;  // first residue with each type
         std::uint32_t atoms = 0, impropers = 0;
     };
     std::array<std::map<std::uint64_t, Entry>, surroundings_levels> entries_;

@@ -1,4 +1,5 @@
-// How alike two types of CGenFF are, by the atoms that have them in the force field's residues.
+// Measures the similarity of two CGenFF types by the atoms that have them in the force field's
+// residues.
 #pragma once
 #include "ligands/model_compounds.h"
 
@@ -11,11 +12,11 @@ namespace palpa {
 // Means over all atoms of a type.
 struct TypeTraits {
     std::string element;
-    double bonds = 0;       // to others
-    double hydrogens = 0;   // among them
+    double bonds = 0;       // number of bonds
+    double hydrogens = 0;   // bonds to hydrogens
     double pi = 0;          // 1 with a double bond, 2 with a triple one or two doubles
-    double aromatic = 0;    // share of atoms
-    double small_ring = 0;  // of 3 or 4 atoms, share
+    double aromatic = 0;    // share of aromatic atoms
+    double small_ring = 0;  // share in rings of 3 or 4 atoms
     double five_ring = 0, six_ring = 0;
     double charge = 0;  // formal, e
     int atoms = 0;

@@ -15,7 +15,7 @@
 
 namespace palpa {
 
-// The last steps of a way downhill and what the gradient did along them.
+// The last steps of a minimisation and the changes of the gradient (L-BFGS memory).
 class CurvaturePairs {
 public:
     using Vector = Eigen::VectorXd;
@@ -32,8 +32,8 @@ public:
         first_scale_ = 1;
     }
 
-    // A step s along which the gradient rose by y. One of negative curvature is no pair, but says
-    // that the next step may be longer.
+    // Adds a step s and the change y of the gradient. With negative curvature it is not stored, but
+    // the next step may be longer.
     void add(Eigen::VectorXd s, Eigen::VectorXd y) {
         constexpr double least = 1e-8;
         const double curvature = s.dot(y);
@@ -79,10 +79,10 @@ private:
     };
     std::deque<Step> steps_;
     bool scales_ = true;
-    double first_scale_ = 1;  // of steps without pairs
+    double first_scale_ = 1;  // scale of steps without pairs
 };
 
-// The inverse Hessian as BFGS's formula has it after all steps, as a matrix.
+// The inverse Hessian by the BFGS formula after all steps, as a matrix.
 template <int Size>
 class InverseHessian {
 public:
@@ -93,7 +93,7 @@ public:
 
     void clear() noexcept { *this = {}; }
 
-    // The same of a step s and y. The first step gives the scale of all directions.
+    // Adds a step s and change y. The first step sets the scale of all directions.
     void add(const Vector& s, const Vector& y) {
         constexpr double least = 1e-12;
         const bool is_first = std::exchange(is_first_, false);
@@ -104,7 +104,7 @@ public:
         inverse_ = (left * inverse_ * left.transpose() + s * s.transpose() / curvature).eval();
     }
 
-    // Before the first step, and where the formula would lead uphill, steepest descent.
+    // Before the first step, and if the formula would lead uphill: steepest descent.
     template <class Precondition>
     Vector find_direction(const Vector& forces, const Precondition& precondition) const {
         if (is_first_) return precondition(forces);
@@ -117,7 +117,7 @@ private:
     bool is_first_ = true;
 };
 
-// What is minimised. It stands at a point and knows its value and the forces there, the negative
+// The function to minimise. It is at a point and knows its value and the forces there, the negative
 // gradient.
 template <class Function, class Vector>
 concept Minimisable = requires(Function& function, const Function& at, const Vector& v,
@@ -126,7 +126,7 @@ concept Minimisable = requires(Function& function, const Function& at, const Vec
     { at.forces() } -> std::convertible_to<const Vector&>;
     // The inverse Hessian as far as it is known, times v.
     { function.precondition(v) } -> std::convertible_to<Vector>;
-    // Limits a direction to the longest step that is allowed.
+    // Limits a direction to the longest allowed step.
     { function.limit(v) } -> std::convertible_to<Vector>;
     // The value at the trial point, length times direction away. Where that is too far, the
     // direction becomes a shorter one, and the length 1.
@@ -135,7 +135,7 @@ concept Minimisable = requires(Function& function, const Function& at, const Vec
     { at.trial_forces() } -> std::convertible_to<const Vector&>;
     // Whether that value is far enough down, for the change that the gradient alone would make.
     { at.accepts(length, length) } -> std::convertible_to<bool>;
-    { function.accept() };  // the trial point is where it stands now
+    { function.accept() };  // moves to the trial point
 };
 
 // Armijo's condition: a value against the one before and the change that the gradient alone would
@@ -145,12 +145,12 @@ inline bool meets_armijo(double before, double value, double linear_change) {
     return value <= before + share * linear_change;
 }
 
-// The same where rounding must not hide that nothing falls.
+// Armijo's condition, which rounding must not hide.
 inline bool is_sufficient(double before, double value, double linear_change) {
     return value < before && meets_armijo(before, value, linear_change);
 }
 
-// How a line search goes on after a move that is not accepted, and where it ends.
+// How a line search continues after a rejected move, and where it ends.
 enum class Backtracking : std::uint8_t {
     Parabola,  // to the minimum of the parabola through both values and the slope, within bounds
     Halving,
@@ -159,7 +159,7 @@ enum class Backtracking : std::uint8_t {
 struct LineSearch {
     int tries = 25;
     Backtracking backtracking = Backtracking::Parabola;
-    double shortest = 0;  // move that is tried
+    double shortest = 0;  // shortest move that is tried
 };
 
 inline double find_shorter(Backtracking backtracking, double length, double slope, double above) {
@@ -168,8 +168,8 @@ inline double find_shorter(Backtracking backtracking, double length, double slop
     return std::isfinite(best) ? std::clamp(best, 0.1 * length, 0.5 * length) : 0.1 * length;
 }
 
-// Shorter and shorter moves, until one is accepted, of whose curvature `memory` learns. The
-// direction is the function's to shorten.
+// The backtracking line search: tries shorter moves until one is accepted, and passes its curvature
+// to `memory`. The function may shorten the direction.
 template <class Memory, Minimisable<typename Memory::Vector> Function>
 bool search_line(Function& function, Memory& memory, typename Memory::Vector& direction,
                  const LineSearch& search = {}) {
@@ -190,7 +190,7 @@ bool search_line(Function& function, Memory& memory, typename Memory::Vector& di
     return false;
 }
 
-// One step along the direction that `memory` has: CurvaturePairs or InverseHessian. False where the
+// One step along the direction of `memory` (CurvaturePairs or InverseHessian). Returns false if the
 // line search finds nothing lower.
 template <class Memory, Minimisable<typename Memory::Vector> Function>
 bool step_along(Function& function, Memory& memory, const LineSearch& search = {}) {
@@ -200,8 +200,8 @@ bool step_along(Function& function, Memory& memory, const LineSearch& search = {
     return search_line(function, memory, direction, search);
 }
 
-// One step downhill; false where even steepest descent finds nothing lower. The caller keeps the
-// memory for as long as it describes the function.
+// One minimisation step; false if even steepest descent finds nothing lower. The caller keeps the
+// memory as long as it describes the function.
 template <class Memory, Minimisable<typename Memory::Vector> Function>
 bool step_downhill(Function& function, Memory& memory, const LineSearch& search = {}) {
     while (!step_along(function, memory, search)) {

@@ -1,4 +1,4 @@
-// The value that a share of samples is below.
+// Quantiles of samples.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace palpa {
 
-// Of at least one sample, at the nearest rank. The median for a share of 0.5.
+// The quantile at `share` by the nearest rank; 0.5 gives the median. Needs at least one sample.
 inline double quantile(std::vector<double> samples, double share) {
     const auto rank = std::lround(share * static_cast<double>(samples.size() - 1));
     std::nth_element(samples.begin(), samples.begin() + rank, samples.end());

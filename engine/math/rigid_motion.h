@@ -1,4 +1,4 @@
-// Where a rigid body has gone: x' = rotation x + translation.
+// Rigid motion: x' = rotation x + translation.
 #pragma once
 #include "math/vec.h"
 
@@ -10,18 +10,18 @@ struct RigidMotion {
 
     Vec3 operator*(const Vec3& point) const noexcept { return rotation * point + translation; }
 
-    // First `inner`, then this.
+    // The motion `inner` followed by this one.
     RigidMotion operator*(const RigidMotion& inner) const noexcept {
         return {rotation * inner.rotation, rotation * inner.translation + translation};
     }
 
-    // The way back.
+    // The inverse motion.
     RigidMotion inverse() const noexcept {
         return {rotation.transpose(), -(rotation.transpose() * translation)};
     }
 };
 
-// By `angle` (rad) about an axis of length 1 through a point, right-handed.
+// Rotation by `angle` (rad), right-handed, about a unit axis through a point.
 inline RigidMotion turn_about(const Vec3& point, const Vec3& axis, double angle) noexcept {
     RigidMotion motion;
     motion.rotation = Eigen::AngleAxisd(angle, axis).toRotationMatrix();

@@ -1,4 +1,4 @@
-// The rigid motion that brings points nearest to others.
+// Superposes two sets of points by a rigid motion.
 #pragma once
 #include "math/rigid_motion.h"
 

@@ -10,14 +10,14 @@ using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 using Quat = Eigen::Quaterniond;
 
-// The turn of a rotation vector: about its direction by its length (rad).
+// The rotation of a rotation vector: about its direction by its length (rad).
 inline Quat turn_of(const Vec3& rotation_vector) noexcept {
     const double angle = rotation_vector.norm();
     if (angle == 0) return Quat::Identity();
     return Quat(Eigen::AngleAxisd(angle, rotation_vector / angle));
 }
 
-// And back; the angle is pi at most.
+// The rotation vector of a rotation; its length is at most pi.
 inline Vec3 rotation_vector_of(const Quat& turn) noexcept {
     const Eigen::AngleAxisd around(turn);
     return around.angle() * around.axis();

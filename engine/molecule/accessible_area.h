@@ -1,4 +1,4 @@
-// How much of every atom a solvent molecule can touch.
+// Computes the solvent-accessible area of every atom.
 #pragma once
 #include "math/vec.h"
 

@@ -1,4 +1,4 @@
-// Atoms that a structure file puts in several places: alternate locations and models.
+// Refuses structures in which an atom has several positions: alternate locations and models.
 #pragma once
 #include "molecule/atoms.h"
 
@@ -6,11 +6,12 @@
 
 namespace palpa {
 
-// Throws LoadError if an atom is there more than once, in alternate locations or models: the first
-// one's two places, and how many lines there are too many. Someone has to choose.
+// Throws LoadError if an atom occurs more than once, in alternate locations or models, with the
+// first two positions and the number of repeated lines.
 void refuse_alternatives(const Structure& structure);
 
-// The same for two places of one atom, `again` behind `first`; `count`: of such lines.
+// Throws this error for two positions of one atom, `again` after `first`; `count`: number of
+// repeated lines.
 [[noreturn]] void refuse_alternative(const Structure& structure, std::size_t first,
                                      std::size_t again, std::size_t count = 1);
 

@@ -23,35 +23,35 @@ struct AtomName {
 // "WATA TIP3 1 OH2", for messages.
 std::string to_string(const AtomName& name);
 
-// Of one segment, number and residue name.
+// Whether two atoms have the same segment, residue number and residue name.
 bool is_same_residue(const AtomName& a, const AtomName& b) noexcept;
 
-// What PDB and mmCIF files tell of an atom beside its name and place.
+// Data of PDB and mmCIF files for an atom besides its name and position.
 struct AtomRecord {
     std::int64_t serial = 0;
     std::int32_t model = 1;
     std::int32_t residue_number = 0;
     char insertion_code = ' ';
-    char alternate = ' ';            // location, "A"; blank where there is only one
+    char alternate = ' ';            // alternate location, "A"; blank if there is only one
     bool hetero = false;             // HETATM
-    bool element_guessed = false;    // the file names none
+    bool element_guessed = false;    // the file has no element
     std::int32_t formal_charge = 0;  // e
     std::string chain;
-    std::string label_chain;  // the archive's name of it, label_asym_id; empty in PDB files
-    std::string element;      // as files spell it: "MG"
+    std::string label_chain;  // the archive's chain name, label_asym_id; empty in PDB files
+    std::string element;      // element as in files: "MG"
     double occupancy = 1;
     double b_factor = 0;  // Å^2
 };
 
-// How a copy of a chain stands: x' = rotation x + translation, Å.
+// A symmetry operator: x' = rotation x + translation, Å.
 struct SymmetryOperator {
-    std::string name;  // its number in the file, mostly
-    Mat3 rotation;     // as the file says, which may be no rotation
+    std::string name;  // usually its number in the file
+    Mat3 rotation;     // as in the file, possibly not a rotation
     Vec3 translation;
-    std::size_t line = 0;  // its first, in the file
+    std::size_t line = 0;  // first line in the file
 };
 
-// Chains of an assembly that are copied alike.
+// Chains of an assembly with the same operators.
 struct AssemblyPart {
     // Their names, "A,B,": label_chain of the atoms, or chain where that is empty; nothing for the
     // chain without a name.
@@ -61,19 +61,19 @@ struct AssemblyPart {
     std::vector<std::vector<std::uint32_t>> operators;
 };
 
-// What the molecule is outside of the crystal, as the authors of a file see it.
+// A biological assembly of the file's authors.
 struct Assembly {
     std::string name;  // "1"
     std::vector<AssemblyPart> parts;
 };
 
-// An atom as a record of bonds names it.
+// An atom in a bond record.
 struct LinkedAtom {
-    std::string chain, residue, number, atom;  // number: with its insertion code
+    std::string chain, residue, number, atom;  // number includes the insertion code
     char alternate = ' ';
 };
 
-// A bond between residues that a file states by itself: LINK, SSBOND, struct_conn.
+// A bond between residues that the file states: LINK, SSBOND, struct_conn.
 struct StructureLink {
     LinkedAtom a, b;
     std::size_t line = 0;
@@ -85,26 +85,26 @@ struct Structure {
     std::string file;
     std::vector<AtomName> names;
     std::vector<Vec3> positions;     // Å
-    std::vector<std::size_t> lines;  // the atom's line in the file, for messages
+    std::vector<std::size_t> lines;  // line of the atom in the file, for messages
 
     // Of CHARMM coordinate files whose weights, where prepare writes B-factors, are not all 0: one
     // an atom, Å^2. Empty for all others; files with records have them there.
     std::vector<double> weights{};
 
     // Of PDB and mmCIF files; empty for all others.
-    std::vector<AtomRecord> records{};      // one an atom
-    std::vector<std::size_t> chain_ends{};  // each as the number of atoms before it
-    std::vector<std::string> notes{};       // what a user should know or decide, a sentence each
-    // What the file calls its residues: "TES" is "TESTOSTERONE".
+    std::vector<AtomRecord> records{};      // one for each atom
+    std::vector<std::size_t> chain_ends{};  // number of atoms before each chain end
+    std::vector<std::string> notes{};       // notes for the user, one sentence each
+    // Full names of residues in the file: "TES" is "TESTOSTERONE".
     std::map<std::string, std::string> component_names{};
-    // Repeated atoms that were left out, a sentence; empty where there were none.
+    // Repeated atoms that were left out, as a sentence; empty if there were none.
     std::string repeated{};
-    std::vector<StructureLink> links{};         // but for those to copies by symmetry
-    std::vector<SymmetryOperator> operators{};  // of the assemblies
+    std::vector<StructureLink> links{};         // without links to symmetry copies
+    std::vector<SymmetryOperator> operators{};  // operators of the assemblies
     std::vector<Assembly> assemblies{};
 };
 
-// Å^2; 0 where the file has none.
+// B-factor, Å^2; 0 if the file has none.
 double b_factor_of(const Structure& structure, std::size_t atom) noexcept;
 
 // A range of an atom table.
@@ -132,7 +132,7 @@ struct SolvationColumns {
 struct AtomTable {
     std::vector<AtomName> names;
     std::vector<Vec3> positions;       // Å
-    std::vector<std::string> element;  // "O"; empty where the force field names none
+    std::vector<std::string> element;  // "O"; empty if the force field has none
     std::vector<double> mass;          // amu
     std::vector<double> charge;        // e
     std::vector<double> sqrt_epsilon;  // (kcal/mol)^(1/2), root of the Lennard-Jones well depth
@@ -144,7 +144,7 @@ struct AtomTable {
     // Bonded pairs of atoms, by index.
     std::vector<std::array<std::uint32_t, 2>> bonds;
 
-    std::vector<std::string> type_names;  // of the force field, each once
+    std::vector<std::string> type_names;  // types of the force field, each once
 
     std::size_t size() const noexcept { return names.size(); }
 };

@@ -1,4 +1,4 @@
-// Hydrogen bonds from N-H to O=C of protein backbones, by an energy between their charges.
+// Finds backbone hydrogen bonds (N-H to O=C) of proteins by an electrostatic energy.
 #pragma once
 #include "molecule/secondary_structure.h"
 
@@ -14,10 +14,10 @@ class BackboneBonds {
 public:
     explicit BackboneBonds(std::span<const BackboneResidue> residues);
 
-    // Whether the N-H of one residue is bonded to the O=C of the other; no where one is not there.
+    // Whether the N-H of one residue is bonded to the O=C of the other; false if one is missing.
     bool has(std::ptrdiff_t donor, std::ptrdiff_t acceptor) const noexcept;
 
-    // To what the N-H of a residue is bonded, the strongest first.
+    // The acceptors of a residue's N-H, the strongest first.
     std::span<const std::ptrdiff_t> acceptors(std::ptrdiff_t donor) const noexcept;
 
 private:

@@ -1,4 +1,4 @@
-// Atoms as balls, found by place.
+// A grid of atoms as balls, for neighbour queries.
 #pragma once
 #include "math/vec.h"
 
@@ -53,7 +53,7 @@ public:
     double largest_radius() const noexcept { return largest_radius_; }  // Å
     std::span<const AtomBall> balls() const noexcept { return balls_; }
 
-    // Calls visit(ball) for every ball whose centre is in the box, ends included.
+    // Calls visit(ball) for every ball with its centre in the box, ends included.
     template <class Visit>
     void visit_box(const Vec3& low, const Vec3& high, const Visit& visit) const {
         any_run(low, high, [&](const AtomBall& ball) {
@@ -107,7 +107,7 @@ private:
             std::clamp(cell, -1.0, static_cast<double>(cells_[axis])));
     }
 
-    // Cells in a row along z hold balls in a row.
+    // Cells along z are contiguous, and so are their balls.
     template <class Test>
     bool any_run(const Vec3& low, const Vec3& high, const Test& test) const {
         if (balls_.empty()) return false;
@@ -129,10 +129,10 @@ private:
     }
 
     std::vector<AtomBall> balls_;
-    std::vector<std::size_t> starts_;  // of every cell, and the end
+    std::vector<std::size_t> starts_;  // start of every cell, and the end
     double edge_ = 1;                  // Å
     double largest_radius_ = 0;
-    std::array<double, 3> first_{};  // cell, by its number from the origin
+    std::array<double, 3> first_{};  // first cell, by its number from the origin
     std::array<std::ptrdiff_t, 3> cells_{};
 };
 

@@ -1,4 +1,4 @@
-// Atoms in one place, where no chemistry puts them.
+// Finds atoms that are too close to each other.
 #pragma once
 #include "math/vec.h"
 #include "molecule/atoms.h"
@@ -18,7 +18,7 @@ namespace palpa {
 std::vector<std::array<std::size_t, 2>> find_coincident_atoms(std::span<const Vec3> positions,
                                                               double distance);
 
-// In words for a warning: the closest of them, and how many others there are. None where none are.
+// The closest pair and the number of other pairs as text for a warning. Unset if there are none.
 std::optional<std::string> describe_coincident_atoms(std::span<const AtomName> names,
                                                      std::span<const Vec3> positions,
                                                      double distance);

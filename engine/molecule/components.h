@@ -1,5 +1,5 @@
-// What residues of the PDB are: which residue of CHARMM36 each is, what it is in words, and what
-// only the crystal needed. Tables; nothing here looks at atoms.
+// Tables of PDB residues: the CHARMM36 residue of each, its meaning in words, and which ones only
+// the crystal needed.
 #pragma once
 #include <optional>
 #include <span>
@@ -9,13 +9,13 @@
 namespace palpa {
 
 struct Component {
-    std::string_view name;     // in the PDB: "NAG"
-    std::string_view charmm;   // the residue of CHARMM36: "BGLCNA"; empty: there is none
-    std::string_view patch;    // on that residue; empty: none
+    std::string_view name;     // name in the PDB: "NAG"
+    std::string_view charmm;   // residue of CHARMM36: "BGLCNA"; empty: none
+    std::string_view patch;    // patch on that residue; empty: none
     std::string_view meaning;  // in words: "N-acetyl-beta-D-glucosamine"
 };
 
-// A table, and the files of CHARMM36 that have its residues.
+// A table of one kind, and the CHARMM36 files with its residues.
 struct ComponentTable {
     std::string_view kind;  // "a sugar"
     std::string_view files;

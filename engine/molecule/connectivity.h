@@ -1,4 +1,4 @@
-// What a structure's atoms are and which of them are bonded, as a PSF file has it.
+// The connectivity of a structure: its atoms and bonded terms, as in a PSF file.
 #pragma once
 #include "molecule/atoms.h"
 
@@ -17,14 +17,15 @@ namespace palpa {
 struct Connectivity {
     std::string file;
     std::vector<AtomName> names;
-    std::vector<std::string> type;   // "CT1"; in old files a number
+    std::vector<std::string> type;   // "CT1"; a number in old files
     std::vector<double> charge;      // e
     std::vector<double> mass;        // amu
-    std::vector<std::size_t> lines;  // the atom's line in the file, for messages
+    std::vector<std::size_t> lines;  // line of the atom in the file, for messages
 
     std::vector<std::array<std::uint32_t, 2>> bonds;
     std::vector<std::array<std::uint32_t, 3>> angles;
-    std::vector<std::array<std::uint32_t, 4>> dihedrals;  // one that has several terms may recur
+    std::vector<std::array<std::uint32_t, 4>>
+        dihedrals;  // a dihedral with several terms may be repeated
     std::vector<std::array<std::uint32_t, 4>> impropers;
     std::vector<std::array<std::uint32_t, 8>> cmaps;  // two dihedrals each
 };
@@ -35,7 +36,7 @@ std::optional<std::array<std::uint32_t, 2>> append_atoms(const Connectivity& fro
                                                          std::span<const std::uint32_t> atoms,
                                                          Connectivity& to);
 
-// The same with the atoms of one segment, in the order of the file.
+// The same for the atoms of one segment, in the order of the file.
 std::optional<std::array<std::uint32_t, 2>> append_segment(const Connectivity& from,
                                                            std::string_view segment,
                                                            Connectivity& to);

@@ -1,4 +1,4 @@
-// The chemical elements by their symbols, in upper case as structure files spell them.
+// Chemical elements by their symbols, in upper case as in structure files.
 #pragma once
 #include <string>
 #include <string_view>
@@ -26,7 +26,7 @@ double covalent_radius(std::string_view element) noexcept;
 // Van der Waals radius, Å (A. Bondi, J. Phys. Chem. 1964, 68, 441), of hydrogen, halogens and what
 // else organic molecules have; 0 of all others, metals among them.
 double van_der_waals_radius(std::string_view element) noexcept;
-// The largest of all elements, Å.
+// The largest radius of all elements, Å.
 double largest_van_der_waals_radius() noexcept;
 
 }  // namespace palpa

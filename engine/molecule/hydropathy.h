@@ -1,4 +1,4 @@
-// How much an amino acid avoids water.
+// The hydropathy of amino acids.
 #pragma once
 #include <optional>
 #include <string_view>

@@ -1,4 +1,4 @@
-// What can be measured between atoms: distances and angles, clashes, salt bridges.
+// Measures between atoms: distances, angles, clashes, salt bridges.
 #pragma once
 #include "molecule/atoms.h"
 
@@ -8,7 +8,7 @@
 
 namespace palpa {
 
-// At b between a and c, rad, 0 to pi; 0 where two are at one place.
+// The angle at b between a and c, rad, 0 to pi; 0 if two points coincide.
 double find_angle(const Vec3& a, const Vec3& b, const Vec3& c) noexcept;
 
 // About the line from b to c, by the right-hand rule as IUPAC has it, rad, -pi to pi: positive

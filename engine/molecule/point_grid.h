@@ -1,4 +1,4 @@
-// Points by cells of space, for questions about what is near.
+// A grid of points for neighbour queries.
 #pragma once
 #include "math/vec.h"
 
@@ -10,7 +10,7 @@
 
 namespace palpa {
 
-// Points that stay where they are. Those that are not finite are near to nothing.
+// Fixed points. Points that are not finite are near nothing.
 class PointGrid {
 public:
     // `edge`: of a cell, Å; larger where points are few, so that there are hardly more cells than
@@ -40,7 +40,7 @@ public:
     }
 
 private:
-    // Cells from and to.
+    // A range of cells.
     struct Block {
         std::array<std::uint32_t, 3> first, last;
     };
@@ -51,14 +51,14 @@ private:
     }
     bool is_out_of_reach(const Vec3& place, double radius) const noexcept;
 
-    // Goes through the cells around a place until `use` says true of the points of one.
+    // Visits the cells around a place until `use` returns true for the points of one.
     template <class Use>
     bool find_cell(const Vec3& place, double radius, const Use& use) const {
         if (order_.empty() || is_out_of_reach(place, radius)) return false;
         const Block block = block_around(place, radius);
         for (std::uint32_t x = block.first[0]; x <= block.last[0]; ++x) {
             for (std::uint32_t y = block.first[1]; y <= block.last[1]; ++y) {
-                // Cells along z stand in a row, and so do their points.
+                // Cells along z are contiguous, and so are their points.
                 const std::size_t begin = first_[index(x, y, block.first[2])];
                 const std::size_t end = first_[index(x, y, block.last[2]) + 1];
                 if (use(std::span(order_).subspan(begin, end - begin))) return true;

@@ -1,4 +1,4 @@
-// What residues are: protein, nucleic acid, water and so on.
+// Classifies residues: protein, nucleic acid, water and so on.
 #pragma once
 #include "molecule/atoms.h"
 
@@ -12,18 +12,18 @@ namespace palpa {
 // Each residue is of one kind.
 enum class ResidueKind : std::uint8_t {
     Water,
-    Ion,      // one atom, of a metal or a halogen
-    Protein,  // with its caps
+    Ion,      // a single metal or halogen atom
+    Protein,  // including caps
     Nucleic,  // free nucleotides are ligands
-    Glycan,   // sugars, bound or free
+    Glycan,   // bound or free sugars
     Lipid,
-    Ligand,  // all else
+    Ligand,  // everything else
 };
 
-// By its name in the PDB, in CHARMM or in other programs.
+// Whether the residue name is water, in the PDB, CHARMM or other programs.
 bool is_water(std::string_view residue) noexcept;
 
-// One of the 20, whatever its protonation, or a cap.
+// Whether it is one of the 20 amino acids in any protonation, or a cap.
 bool is_plain_amino_acid(std::string_view residue) noexcept;
 
 // Of each residue, a range of the table. By its atoms where these decide: a water is an oxygen with

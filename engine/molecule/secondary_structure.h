@@ -1,5 +1,5 @@
-// Helices and strands of proteins, from the hydrogen bonds of their backbones as the program DSSP
-// finds them: W. Kabsch, C. Sander, Biopolymers 22, 2577 (1983).
+// Secondary structure of proteins from backbone hydrogen bonds by the rules of DSSP: W. Kabsch, C.
+// Sander, Biopolymers 22, 2577 (1983).
 #pragma once
 #include "math/vec.h"
 
@@ -43,20 +43,20 @@ bool is_peptide_bond(const Vec3& c, const Vec3& n) noexcept;
 // number of residues.
 std::vector<SecondaryStructure> find_secondary_structure(std::span<const BackboneResidue> residues);
 
-// Keeps the classes of residues that hardly move.
+// Caches the result while residues hardly move.
 class SecondaryStructureCache {
 public:
     // Those of the last time, unless a CA or O has moved by 0.5 Å or more since the classes were
     // found, or residues are others. The span lasts until the next call.
     std::span<const SecondaryStructure> update(std::span<const BackboneResidue> residues);
 
-    // How often classes were found.
+    // Number of computations so far.
     std::size_t times_found() const noexcept { return times_found_; }
 
 private:
     bool is_as_found(std::span<const BackboneResidue> residues) const noexcept;
 
-    std::vector<BackboneResidue> residues_;  // when the classes were found
+    std::vector<BackboneResidue> residues_;  // residues at the last computation
     std::vector<SecondaryStructure> classes_;
     std::size_t times_found_ = 0;
 };

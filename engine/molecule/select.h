@@ -1,5 +1,5 @@
-// Atoms by expressions, in the words of VMD's users where they fit: "protein and within 5 of
-// resname LIG". tools/selections.md has the language.
+// Selects atoms by expressions like those of VMD: "protein and within 5 of resname LIG". The
+// language: tools/selections.md.
 #pragma once
 #include "molecule/atoms.h"
 #include "molecule/secondary_structure.h"
@@ -15,9 +15,9 @@ namespace palpa {
 
 struct SelectionNode;  // molecule/selection_tree.h
 
-// An expression, ready to be evaluated again and again; copies share it.
+// A parsed expression that can be evaluated many times; copies share it.
 struct Selection {
-    std::string source;  // for messages: "selection", or what the expression is from
+    std::string source;  // for messages: "selection", or the origin of the expression
     std::shared_ptr<const SelectionNode> root;
 };
 
@@ -34,7 +34,7 @@ std::vector<Selection> parse_measure(std::string_view text, const std::string& s
 bool depends_on_positions(const Selection& selection);
 bool depends_on_hands(const Selection& selection);
 
-// Neither: the same atoms are selected until some are added or removed.
+// Whether the selected atoms change only when atoms are added or removed.
 bool is_constant(const Selection& selection);
 
 struct NamedRange {
@@ -42,11 +42,11 @@ struct NamedRange {
     AtomRange atoms;
 };
 
-// The atoms to select from, and what expressions may say of them.
+// The atoms to select from, and their data for expressions.
 struct SelectionContext {
     const AtomTable& atoms;
-    std::span<const NamedRange> molecules;     // none: the table is one, without a name
-    std::span<const std::uint32_t> hand = {};  // atoms that hands hold
+    std::span<const NamedRange> molecules;     // none: one molecule without a name
+    std::span<const std::uint32_t> hand = {};  // atoms held by hands
     // Of its residue, one entry per atom; empty where nobody has found it.
     std::span<const SecondaryStructure> structure = {};
     // One entry per atom; empty where segments name the chains: "A" or "PROA", as CHARMM-GUI
@@ -58,7 +58,7 @@ struct SelectionContext {
 // that is not there, and where the secondary structure is asked for and not known.
 std::vector<bool> select_atoms(const Selection& selection, const SelectionContext& context);
 
-// A single line that says what the first words are, for messages and help.
+// One line with examples, for messages and help.
 inline constexpr std::string_view selection_examples =
     "protein, chain A, resid 50:80, resname LIG, name CA or within 5 of ligand";
 

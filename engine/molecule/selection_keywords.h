@@ -1,4 +1,4 @@
-// The words of the language of selections.
+// The keywords of selection expressions.
 #pragma once
 #include "molecule/selection_tree.h"
 
@@ -28,7 +28,7 @@ struct SelectionKeyword {
     std::variant<AtomClass, NameProperty, NumberProperty, SelectionOperator> meaning;
 };
 
-// Null where a word, in small letters, is none.
+// The keyword of a word in lower case; null if it is none.
 const SelectionKeyword* find_selection_keyword(std::string_view lower) noexcept;
 
 // "; did you mean 'protein'?" or nothing.

@@ -1,4 +1,4 @@
-// Whether a name or a number is one that an expression means.
+// Tests names and numbers against those of an expression.
 #pragma once
 #include "molecule/selection_tree.h"
 
@@ -7,7 +7,7 @@
 
 namespace palpa {
 
-// In a pattern * stands for any letters, ? for one.
+// Whether a name matches; in a pattern * stands for any letters, ? for one.
 bool fits(const NamePattern& name, std::string_view text) noexcept;
 bool fits_any(std::span<const NamePattern> names, std::string_view text) noexcept;
 

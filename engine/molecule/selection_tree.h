@@ -1,5 +1,5 @@
-// An expression as a tree: what molecule/parse_selection.cpp makes and molecule/select.cpp
-// evaluates.
+// The syntax tree of a selection expression, made by molecule/parse_selection.cpp and evaluated by
+// molecule/select.cpp.
 #pragma once
 #include "molecule/select.h"
 
@@ -98,7 +98,7 @@ struct SelectionNode {
     std::variant<AtomClass, NameTerm, SpanTerm, CompareTerm, NotTerm, AndTerm, OrTerm, WithinTerm,
                  SameTerm>
         term;
-    std::size_t column = 0;               // where it stands
+    std::size_t column = 0;               // column of the term in the text
     std::vector<SelectionNode> children;  // of and, or: two or more; of not, within, same: one
 };
 

@@ -1,4 +1,4 @@
-// The words of an expression, with where they stand.
+// Splits an expression into words with their positions.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -9,7 +9,7 @@ namespace palpa {
 struct SelectionToken {
     enum class Kind { Word, Quoted, Open, Close, Comma, Compare, End };
     Kind kind = Kind::End;
-    std::string_view text;   // into the expression; without the quotes
+    std::string_view text;   // view into the expression, without quotes
     std::size_t column = 0;  // in letters, from 1
 };
 

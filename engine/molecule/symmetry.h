@@ -1,4 +1,4 @@
-// Atoms of a molecule that only their numbers tell apart, as the two sides of a phenyl ring.
+// Finds symmetric atoms of a molecule, such as the two sides of a phenyl ring.
 #pragma once
 #include "math/rigid_motion.h"
 #include "molecule/atoms.h"

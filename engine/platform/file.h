@@ -13,17 +13,17 @@
 namespace palpa {
 
 enum class FileUse : std::uint8_t {
-    Read,      // waits for nobody
-    ReadHere,  // and is no link
-    Write,     // from its beginning, into what is there
-    Create,    // for writing; neither a file nor a link is there
+    Read,      // opens without waiting
+    ReadHere,  // refuses links
+    Write,     // overwrites an existing file from its beginning
+    Create,    // creates a new file; fails if a file or link exists
 };
 
 // An open file, closed with its owner.
 class File {
 public:
     File() = default;
-    // Not open where `error` is set.
+    // Not open if `error` is set.
     File(const std::filesystem::path& path, FileUse use, std::error_code& error) noexcept;
     File(File&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
     File& operator=(File&& other) noexcept {
@@ -34,12 +34,12 @@ public:
 
     bool is_open() const noexcept { return descriptor_ >= 0; }
 
-    // In bytes; nothing where it is no regular file.
+    // Size in bytes; unset if it is not a regular file.
     std::optional<std::uintmax_t> find_size(std::error_code& error) const noexcept;
-    // How many bytes came, at most the span's; 0 at the end.
+    // Reads up to the size of the span; returns the number of bytes, 0 at the end.
     std::size_t read(std::span<char> into, std::error_code& error) const noexcept;
     void write(std::string_view text, std::error_code& error) const noexcept;
-    // Afterwards it is not open; `error` says what the system could not write.
+    // Closes the file; `error` says if the system could not write everything.
     void close(std::error_code& error) noexcept;
 
 private:
@@ -59,7 +59,7 @@ public:
     LockedFolder& operator=(const LockedFolder&) = delete;
     ~LockedFolder();
 
-    // Another has it. Where a file system knows no locks, nobody has.
+    // Whether another program has the lock; false if the file system has no locks.
     bool is_taken() const noexcept { return is_taken_; }
 
 private:

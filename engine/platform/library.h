@@ -1,4 +1,4 @@
-// Shared libraries that are looked for while the program runs.
+// Loads shared libraries at run time.
 #pragma once
 #include <initializer_list>
 #include <string>
@@ -7,22 +7,23 @@
 
 namespace palpa {
 
-// What files of a library are called here: "HD" gives HD.dll, or libHD.so and with each of the
-// versions behind it.
+// File names of a library on this system: "HD" gives HD.dll, or libHD.so, also with each of the
+// versions.
 std::vector<std::string> list_library_files(std::string_view name,
                                             std::initializer_list<std::string_view> versions);
 
-// Never unloaded: its functions may be called until the program ends.
+// A library that is never unloaded, so its functions stay valid until the program ends.
 class SharedLibrary {
 public:
-    // By a path, or by a name that the system looks for.
+    // Loads by a path, or by a name that the system searches.
     explicit SharedLibrary(const std::string& file);
 
     bool is_open() const noexcept { return handle_ != nullptr; }
-    const std::string& problem() const noexcept { return problem_; }  // begins with the file
+    // Error message, which begins with the file.
+    const std::string& problem() const noexcept { return problem_; }
 
-    void* find(const char* function) const noexcept;  // nullptr: it has none
-    // The file that was loaded, by one of its functions.
+    void* find(const char* function) const noexcept;  // nullptr if the library does not have it
+    // Path of the loaded file, found by one of its functions.
     std::string path_of(void* function) const;
 
 private:

@@ -10,11 +10,11 @@
 
 namespace palpa {
 
-// What one call to read or write came to.
+// The result of one read or write call.
 struct SocketTransfer {
-    std::size_t bytes = 0;    // 0: nothing is there now, or there is no room
-    bool is_ended = false;    // the other end writes nothing more
-    std::error_code error{};  // the connection cannot be used any longer
+    std::size_t bytes = 0;    // 0: no data now, or no room
+    bool is_ended = false;    // the other end has closed its side
+    std::error_code error{};  // the connection is broken
 };
 
 // One end of a stream, or what waits for others to connect; closed with its owner.
@@ -32,13 +32,13 @@ public:
     // whether it worked. `address` is of numbers (IPv4, IPv6) or "localhost": names are not looked
     // up, which could take seconds. Not open where `error` is set.
     static Socket connect(const std::string& address, std::uint16_t port, std::error_code& error);
-    // Others may connect from now on; port 0 takes any that is free.
+    // Listens for connections; port 0 chooses a free one.
     static Socket listen(const std::string& address, std::uint16_t port, std::error_code& error);
-    // The next one that has connected to a listening socket; not open where there is none.
+    // The next connection of a listening socket; not open if there is none.
     Socket accept(std::error_code& error) const;
 
     bool is_open() const noexcept { return handle_ != none; }
-    std::uint16_t find_port() const noexcept;  // of this end; 0 where the system does not say
+    std::uint16_t find_port() const noexcept;  // port of this end; 0 if unknown
     std::error_code find_error() const noexcept;
 
     SocketTransfer read(std::span<std::byte> into) const noexcept;
@@ -47,7 +47,7 @@ public:
     void end_writing() const noexcept;
     void close() noexcept;
 
-    std::intptr_t handle() const noexcept { return handle_; }  // the system's
+    std::intptr_t handle() const noexcept { return handle_; }  // handle of the system
 
 private:
     static constexpr std::intptr_t none = -1;
@@ -61,7 +61,7 @@ private:
 struct AwaitedSocket {
     const Socket* socket = nullptr;
     bool for_room = false;
-    // The answer. After an error both are set: the next call says it.
+    // The result. After an error both are set, and the next call reports it.
     bool has_input = false;
     bool has_room = false;
 };

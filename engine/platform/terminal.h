@@ -1,4 +1,4 @@
-// Whether a person reads what is written, and what comes in on standard input.
+// Terminals and standard input.
 #pragma once
 #include <cstddef>
 #include <cstdio>
@@ -7,7 +7,7 @@
 
 namespace palpa {
 
-// `stream` is stdout or stderr.
+// Whether `stream` (stdout or stderr) is a terminal.
 bool is_terminal(std::FILE* stream) noexcept;
 
 // What is next on standard input, as much as is there and has room; 0 bytes at its end. Nothing

@@ -3,12 +3,11 @@
 
 namespace palpa {
 
-// The calling thread above all ordinary ones, and woken on the millisecond; false where the system
-// does not grant it.
+// Requests real-time priority for the calling thread, for wake-ups on the millisecond; false if the
+// system refuses.
 bool ask_for_real_time() noexcept;
 
-// No page of the program, also of those to come, leaves main memory once it was used; false where
-// the system does not grant it.
+// Locks the memory of the program, also later pages, in RAM; false if the system refuses.
 bool ask_for_locked_memory() noexcept;
 
 // The calling thread, and on POSIX those that it starts, after other threads.

@@ -1,4 +1,4 @@
-// Turns a system so that the hand's axis means something.
+// Turns a system to a chosen orientation.
 #pragma once
 #include "math/vec.h"
 #include "molecule/atoms.h"

@@ -1,4 +1,4 @@
-// Residues for the ligands that a force field lacks, when a user asks for approximate ones.
+// Makes approximate residues for ligands that the force field lacks, on request.
 #pragma once
 #include "charmm/force_field.h"
 #include "core/load_error.h"
@@ -12,23 +12,25 @@
 
 namespace palpa {
 
-// What is approximate in a prepared system, for programs and for the scene.
+// An approximate residue of a prepared system, for programs and for the scene.
 struct ApproximatePart {
-    std::string residue;         // "MK1"
-    std::string source;          // of its bonds and hydrogens
-    int charge = 0;              // e
-    double type_penalty = 0;     // mean of its atoms, see ligands/type_library.h
-    double highest_penalty = 0;  // of its parameters by analogy, see ligands/analogy.h
+    std::string residue;      // "MK1"
+    std::string source;       // source of its bonds and hydrogens
+    int charge = 0;           // e
+    double type_penalty = 0;  // mean over its atoms, see ligands/type_library.h
+    double highest_penalty =
+        0;  // highest penalty of its parameters by analogy, see ligands/analogy.h
     std::size_t analogies = 0;
-    std::vector<std::vector<std::string>> rigid_bonds;  // names of two atoms; barriers are guesses
+    std::vector<std::vector<std::string>>
+        rigid_bonds;     // names of two atoms; bonds with uncertain barriers
     std::string stream;  // the residue and its new parameters as a CHARMM stream file
 };
 
 struct ApproximatedUnknown {
-    ForceField force_field;  // with residues and parameters for them
-    Structure structure;     // without hydrogens that the residues do not have
+    ForceField force_field;  // with the new residues and parameters
+    Structure structure;     // without hydrogens that the new residues do not have
     std::vector<ApproximatePart> parts;
-    std::vector<LoadError> refused;  // why others stay unknown
+    std::vector<LoadError> refused;  // why other residues stay unknown
 };
 
 // Takes each residue that is unknown under all its names (prepare/residue_names.h), of at least two

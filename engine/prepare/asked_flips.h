@@ -1,4 +1,4 @@
-// Amides and imidazoles that a user wants turned over.
+// Flips the amides and imidazoles that a user names.
 #pragma once
 #include "charmm/missing.h"
 #include "molecule/atoms.h"

@@ -1,4 +1,4 @@
-// Biological assemblies: the whole molecule from the part that a crystal's file holds.
+// Builds biological assemblies by the symmetry records of a file.
 #pragma once
 #include "molecule/atoms.h"
 #include "prepare/report.h"
@@ -15,7 +15,7 @@ namespace palpa {
 // assemblies of more than ten million atoms.
 Structure build_assembly(const Structure& structure, int assembly, Report& report);
 
-// Warns where the file's assembly 1 is more than what the file holds.
+// Warns if assembly 1 of the file is larger than the file's content.
 void warn_of_assembly(const Structure& structure, Report& report);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// From the atom names of a file to those of the force field.
+// Renames atoms from the names of a file to those of the force field.
 #pragma once
 #include "charmm/force_field.h"
 #include "charmm/generate.h"

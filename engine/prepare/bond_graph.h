@@ -1,4 +1,4 @@
-// Who is bonded to whom, with the lengths and angles of the parameters.
+// The bond graph of a topology, with bond lengths and angles of the parameters.
 #pragma once
 #include "charmm/topology.h"
 #include "molecule/connectivity.h"
@@ -16,7 +16,7 @@ namespace palpa {
 class Lists {
 public:
     Lists() = default;
-    // Entries of atom and number.
+    // From pairs of atom and number.
     Lists(std::span<const std::array<std::uint32_t, 2>> entries, std::size_t atoms);
 
     std::span<const std::uint32_t> of(std::size_t atom) const noexcept {
@@ -43,10 +43,10 @@ public:
         return neighbours_.of(atom);
     }
 
-    // Of two bonded atoms, Å.
+    // Equilibrium length of the bond of two atoms, Å.
     double bond_length(std::uint32_t a, std::uint32_t b) const noexcept;
 
-    // rad; none where the parameters have none.
+    // Equilibrium angle, rad; unset if the parameters have none.
     std::optional<double> find_angle(std::uint32_t a, std::uint32_t centre,
                                      std::uint32_t c) const noexcept;
 

@@ -1,4 +1,4 @@
-// Gives the atoms that a structure lacks their place, from lengths, angles and IC tables.
+// Builds positions of missing atoms from bond lengths, angles and IC tables.
 #pragma once
 #include "charmm/complete.h"
 #include "charmm/topology.h"
@@ -11,11 +11,11 @@
 
 namespace palpa {
 
-// What settled where an atom is.
+// What determined the position of an atom.
 enum class PlacedBy {
-    Neighbours,  // where the others around its neighbour leave room; names by the IC table
+    Neighbours,  // the free direction at its neighbour; names by the IC table
     Table,       // a dihedral of the IC table
-    Guess,       // nothing names its dihedral: trans, or any direction where there is no trans
+    Guess,       // no dihedral known: trans, or any direction if there is no trans
 };
 
 struct PlacedAtom {
@@ -24,8 +24,9 @@ struct PlacedAtom {
 };
 
 struct BuiltPositions {
-    std::vector<PlacedAtom> placed;       // in the order in which they were
-    std::vector<std::uint32_t> unplaced;  // rising: nothing that they are bonded to has a place
+    std::vector<PlacedAtom> placed;  // in the order of building
+    std::vector<std::uint32_t>
+        unplaced;  // ascending: atoms without a bonded atom that has a position
 };
 
 // Places the atoms whose position is not finite, heavy ones first, and moves no other. Bond lengths

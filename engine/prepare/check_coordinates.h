@@ -1,4 +1,4 @@
-// Whether a file's coordinates can be those of its molecules.
+// Checks that a file's coordinates are plausible.
 #pragma once
 #include "charmm/topology.h"
 #include "molecule/atoms.h"

@@ -1,5 +1,5 @@
-// What of a structure file becomes part of the system: one model, one location of every atom, and
-// the residues that a user wants.
+// Chooses the part of a structure file for the system: one model, one location of every atom, and
+// the residues that the user wants.
 #pragma once
 #include "molecule/atoms.h"
 #include "prepare/report.h"

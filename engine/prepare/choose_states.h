@@ -1,5 +1,5 @@
-// Which way round amides and histidines stand, and where a histidine has its hydrogens: chosen
-// together, by the hydrogen bonds that heavy atoms allow.
+// Chooses flips of amides and histidines, and the protonation of histidines, together, by the
+// possible hydrogen bonds.
 #pragma once
 #include "math/vec.h"
 #include "molecule/atoms.h"
@@ -15,18 +15,18 @@ namespace palpa {
 
 struct StateSettings {
     bool may_flip = true;
-    std::span<const Vec3> waters;  // Å, oxygens of waters that are not in the structure
-    // First atoms of residues that stay as they are, rising; a histidine among them has a state.
+    std::span<const Vec3> waters;  // oxygens of waters outside of the structure, Å
+    // First atoms of residues that stay unchanged, ascending; a histidine among them has a state.
     std::span<const std::size_t> given;
-    // Likewise of residues that are not turned over.
+    // First atoms of residues that are not flipped.
     std::span<const std::size_t> held;
 };
 
 struct ChosenState {
-    std::size_t residue = 0;     // its first atom
-    std::string_view histidine;  // "HSD", "HSE" or "HSP"; empty of an amide
+    std::size_t residue = 0;     // first atom of the residue
+    std::string_view histidine;  // "HSD", "HSE" or "HSP"; empty for an amide
     bool is_flipped = false;
-    double gain = 0;  // of the flip, in hydrogen bonds, over the best without
+    double gain = 0;  // gain of the flip in hydrogen bonds
     std::string reason;
     bool might_be_charged = false;  // both nitrogens have an acceptor, but no acid is near
 };

@@ -1,4 +1,4 @@
-// What of a prepared system the hand of its scene holds, and which way that goes best.
+// Chooses what the hand of the scene holds, and in which direction it moves best.
 #pragma once
 #include "math/vec.h"
 #include "molecule/atoms.h"
@@ -14,10 +14,11 @@ namespace palpa {
 
 struct HandChoice {
     std::string segment;
-    std::string atom;  // on a spring: residue ("36"), or residue and atom; empty: all of it
+    std::string
+        atom;  // held by a spring: residue ("36"), or residue and atom; empty: the whole molecule
     std::vector<std::uint32_t> held;  // atoms of the structure, rising
     std::string words;                // "residue PRO 36 of A, on a spring"
-    std::string reason;               // why it was taken
+    std::string reason;               // reason of the choice
 };
 
 // `grab`: "SEGMENT", the whole molecule, or "SEGMENT:RESIDUE", a residue on a spring. Empty: the
@@ -28,14 +29,14 @@ struct HandChoice {
 HandChoice choose_hand(const Structure& structure, std::span<const SystemSegment> segments,
                        std::string_view grab);
 
-// Of the largest molecule the residue that moves most easily, as above.
+// The residue of the largest molecule that moves most easily, by the same rule.
 HandChoice choose_residue(const Structure& structure, std::span<const SystemSegment> segments);
 
 // The direction in which what is held meets the fewest heavy atoms on its next 12 Å; of those alike
 // the one that leads most away from its neighbours. A unit vector.
 Vec3 find_way_out(const Structure& structure, std::span<const std::uint32_t> held);
 
-// The middle of these atoms, heavy ones alone if there are any.
+// The centre of these atoms, of the heavy ones if there are any, Å.
 Vec3 middle_of(const Structure& structure, std::span<const std::uint32_t> atoms);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// What heavy atoms say of hydrogen bonds: who gives, who takes, and how well two of them stand.
+// Scores possible hydrogen bonds from heavy atoms: donors, acceptors, and their geometry.
 #pragma once
 #include "math/vec.h"
 #include "molecule/atoms.h"
@@ -12,21 +12,21 @@ namespace palpa {
 
 enum class HydrogenRole : std::uint8_t {
     None,
-    Giver,   // has a hydrogen to give: N-H
-    Taker,   // only takes one: carbonyl, carboxylate, the lone pair of a ring's nitrogen
-    Both,    // as its surroundings want: hydroxyl, water
-    Carbon,  // C-H of a ring: a weak giver
-    Metal,   // holds a lone pair, and nothing else
+    Giver,   // donor: N-H
+    Taker,   // acceptor only: carbonyl, carboxylate, lone pair of a ring nitrogen
+    Both,    // donor or acceptor: hydroxyl, water
+    Carbon,  // weak donor: C-H of a ring
+    Metal,   // metal ion: binds lone pairs only
 };
 
-// An atom that may take part, and how it looks out of its molecule.
+// A possible donor or acceptor with its directions.
 struct HydrogenSite {
     Vec3 place;
     HydrogenRole role = HydrogenRole::None;
-    bool is_charged = false;    // of a carboxylate or an ammonium, guanidinium
+    bool is_charged = false;    // part of a carboxylate, ammonium or guanidinium
     std::vector<Vec3> outward;  // unit vectors, one or two; none: any direction
-    double half_angle = 0;      // rad, around them within which all is well
-    std::size_t atom = 0;       // of the structure; none of a water beside it
+    double half_angle = 0;      // rad; within this angle of them the direction is ideal
+    std::size_t atom = 0;       // atom of the structure; unset for an external water
 };
 
 // The roles of the atoms of amino acids by their names; elsewhere by elements and bonds: oxygens
@@ -35,7 +35,7 @@ struct HydrogenSite {
 std::vector<HydrogenSite> find_hydrogen_sites(const Structure& structure,
                                               const std::vector<ResidueRange>& residues);
 
-// Beyond it two sites mean nothing to each other.
+// Largest distance of two sites with a score.
 inline constexpr double hydrogen_bond_reach = 4;  // Å
 
 // Of two sites: 1 for a giver and a taker 3 Å apart that face each other, -1 for two of a kind,

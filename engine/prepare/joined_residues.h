@@ -1,4 +1,4 @@
-// Residues of a file that CHARMM has as a part of the one beside them.
+// Joins residues of a file that are part of the neighbouring residue in CHARMM.
 #pragma once
 #include "charmm/force_field.h"
 #include "molecule/atoms.h"

@@ -1,5 +1,4 @@
-// Finds which atom of a template each atom of a residue is, by elements and bonds, where names do
-// not tell.
+// Matches the atoms of a residue to a template by elements and bonds, if names do not suffice.
 #pragma once
 #include "charmm/force_field.h"
 #include "molecule/atoms.h"
@@ -14,7 +13,7 @@
 
 namespace palpa {
 
-// Heavy atoms and who is bonded to whom.
+// Heavy atoms and their bonds.
 struct BondedAtoms {
     std::vector<std::string> names, elements;
     std::vector<std::vector<std::uint32_t>> neighbours;

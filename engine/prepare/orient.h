@@ -1,5 +1,5 @@
-// Turns what heavy-atom coordinates leave open to where its energy is lowest: hydroxyls, thiols,
-// ammonium groups, waters.
+// Orients hydroxyls, thiols, ammonium groups and waters to low energy; heavy-atom coordinates do
+// not determine them.
 #pragma once
 #include "charmm/topology.h"
 #include "forces/nonbonded.h"
@@ -14,32 +14,33 @@
 namespace palpa {
 
 struct OrientSettings {
-    bool has_methyls = false;  // XH3 of carbon turn as well
-    double switch_from = 8;    // Å; of Lennard-Jones
+    bool has_methyls = false;  // methyl groups turn too
+    double switch_from = 8;    // start of the Lennard-Jones switch, Å
     double cutoff = 10;        // Å
     int sweep_limit = 12;
 };
 
-// The energy that counts, as `add_forces` takes it: CHARMM's FSHIFT and VSWITCH.
+// The settings of the energy, for `add_forces`: CHARMM's FSHIFT and VSWITCH.
 NonbondedSettings nonbonded_settings(const OrientSettings& settings) noexcept;
 
 struct OrientedGroup {
     enum class Kind {
-        Rotor,  // one heavy neighbour; all else hydrogens
+        Rotor,  // one heavy neighbour, otherwise hydrogens
         Water,  // no heavy neighbour, several hydrogens
     };
     Kind kind;
-    std::uint32_t atom;          // the heavy atom whose hydrogens turn
-    double dihedral_before = 0;  // rad, of a moved atom; 0 of waters, and where there is none
+    std::uint32_t atom;  // the heavy atom whose hydrogens turn
+    double dihedral_before =
+        0;  // dihedral of a moved atom, rad; 0 for waters, and if there is none
     double dihedral_after = 0;
-    double energy_before = 0;  // kcal/mol, of all that changes as the group moves, in the
+    double energy_before = 0;  // kcal/mol, of all terms that change with the group, in its
     double energy_after = 0;   // surroundings of the time
     std::vector<std::uint32_t> moved;
 };
 
 struct OrientReport {
-    std::vector<OrientedGroup> groups;  // by kind, then by atom
-    double energy_change = 0;           // kcal/mol, of the whole structure; never above 0
+    std::vector<OrientedGroup> groups;  // sorted by kind, then by atom
+    double energy_change = 0;           // change of the total energy, kcal/mol; never above 0
     int sweeps = 0;
     bool is_settled = true;  // false: stopped at the limit of sweeps
 };

@@ -1,4 +1,4 @@
-// Whether a patch is meant for a residue.
+// Checks whether a patch fits a residue.
 #pragma once
 #include "charmm/force_field.h"
 

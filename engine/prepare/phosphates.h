@@ -1,4 +1,4 @@
-// The charge of a nucleic acid's phosphates where no solvent stands around.
+// Reduces the charge of nucleic acid phosphates in vacuum.
 #pragma once
 #include "molecule/connectivity.h"
 

@@ -1,4 +1,4 @@
-// From a structure as it was downloaded to a system with every atom, typed, patched and relaxed.
+// Prepares a downloaded structure: a system with all atoms, typed, patched and relaxed.
 #pragma once
 #include "charmm/force_field.h"
 #include "charmm/topology.h"
@@ -24,20 +24,21 @@
 namespace palpa {
 
 struct PreparedSystem {
-    Structure structure;  // every atom, in the order of the file, built ones behind their residue's
+    Structure
+        structure;  // all atoms in the order of the file, built ones at the end of their residue
     Connectivity connectivity;  // of the same atoms in the same order
-    Topology topology;          // likewise
-    ForceField parameters;      // what of the force field is used
+    Topology topology;          // of the same atoms in the same order
+    ForceField parameters;      // parameters that are used
     Report report;
-    Solvent solvent = Solvent::None;  // that charges and parameters are for
+    Solvent solvent = Solvent::None;  // solvent model of the charges and parameters
     std::vector<ApproximatePart> approximate;
-    std::size_t reduced_phosphates = 0;  // how many have less than their whole charge
+    std::size_t reduced_phosphates = 0;  // number of phosphates with a reduced charge
 };
 
-// What the force field lacks, beside whatever else is wrong.
+// The error for residues that the force field lacks, possibly with other problems.
 class UnknownResidues : public LoadError {
 public:
-    // `is_all`: nothing else is wrong.
+    // `is_all`: there are no other problems.
     UnknownResidues(const LoadError& error, std::vector<UnknownResidue> residues, bool is_all)
         : LoadError(error),
           is_all_(is_all),
@@ -51,8 +52,8 @@ private:
     std::shared_ptr<const std::vector<UnknownResidue>> residues_;  // copies must not throw
 };
 
-// What a topology file of the system says of itself: `title`, and before it the origin of charges
-// that are not the force field's own.
+// Title for topology files: `title`, preceded by the source of charges that differ from the force
+// field.
 std::string topology_title(const PreparedSystem& system, std::string_view title);
 
 // The stages are listed in engine/design.md. Throws LoadError with everything that is missing:

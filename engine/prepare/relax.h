@@ -1,4 +1,4 @@
-// Takes clashes out of a system whose missing atoms have just been built.
+// Relaxes clashes of a system whose missing atoms have just been built.
 #pragma once
 #include "charmm/topology.h"
 #include "forces/force_field.h"
@@ -13,19 +13,19 @@
 
 namespace palpa {
 
-// Two atoms that are more than three bonds apart, or in different molecules.
+// Two atoms more than three bonds apart, or in different molecules.
 struct AtomContact {
     std::uint32_t a = 0, b = 0;
     double distance = 0;  // Å
 };
 
-// How clashes went.
+// The result of the relaxation.
 struct ClashReport {
     EnergyTerms before, after;  // kcal/mol, dielectric 4 r, to 9 Å
     std::size_t steps = 0;
-    double rms_force = 0;  // at the end, kcal/mol/Å
+    double rms_force = 0;  // final rms force, kcal/mol/Å
     std::optional<AtomContact> closest_before, closest_after;
-    AtomContact largest_move;  // of a given heavy atom, a; b unused
+    AtomContact largest_move;  // largest move of a given heavy atom, a; b unused
 };
 
 // First the built atoms alone, then all of them, the given heavy atoms held by 5 kcal/mol/Å^2 to

@@ -1,4 +1,4 @@
-// What was decided on the way from a structure file to a system, for people to read and to doubt.
+// The report of a preparation: its decisions, for people to check.
 #pragma once
 #include <string>
 #include <string_view>
@@ -7,17 +7,17 @@
 
 namespace palpa {
 
-// Decisions under headings, both in the order in which they came.
+// Decisions under headings, both in order of arrival.
 class Report {
 public:
     void add(std::string_view heading, std::string decision);
 
-    // Things that a user should look at before trusting the system; also printed on their own.
+    // Warnings that a user should check before using the system; also printed separately.
     void warn(std::string decision);
 
     const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
-    // All of it: warnings first, then each heading with its lines.
+    // The whole report: warnings first, then each heading with its lines.
     std::string to_text() const;
 
 private:

@@ -1,4 +1,4 @@
-// Bonds between residues that are no part of a chain: glycans, hemes, metals, closed chains.
+// Finds bonds between residues outside of chains: glycans, hemes, metals, closed chains.
 #pragma once
 #include "charmm/force_field.h"
 #include "molecule/atoms.h"
@@ -13,7 +13,7 @@
 
 namespace palpa {
 
-// A patch on several residues, by any atom of each, in the order of the patch's digits.
+// A patch on several residues, given by any atom of each, in the order of the patch's digits.
 struct LinkPatch {
     std::string patch;
     std::vector<std::size_t> atoms;
@@ -28,7 +28,7 @@ StatedLinks find_stated_links(const Structure& structure);
 struct ResidueLink {
     std::array<std::size_t, 2> atoms{};
     double distance = 0;     // Å
-    bool is_stated = false;  // by the file
+    bool is_stated = false;  // stated in the file
 };
 
 // Heavy atoms of different residues within the sum of their covalent radii and 0.25 Å, or stated

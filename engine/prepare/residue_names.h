@@ -1,4 +1,4 @@
-// From the residue names of a file to those of the force field, protonation included.
+// Renames residues from the names of a file to those of the force field, and chooses protonation.
 #pragma once
 #include "charmm/force_field.h"
 #include "charmm/missing.h"
@@ -17,7 +17,7 @@ namespace palpa {
 
 // A patch on one residue: its protonation.
 struct ResiduePatch {
-    std::size_t atom;  // any of the residue's
+    std::size_t atom;  // any atom of the residue
     std::string patch;
 };
 
@@ -26,8 +26,8 @@ struct NamedResidues {
     std::vector<ResiduePatch> patches;
     std::vector<LinkPatch> links;
     std::vector<UnknownResidue> unknown;
-    // What is wrong with residues: those without a topology (left out of the structure, so that
-    // what else is missing can be found too) and choices that fit nothing. To be thrown.
+    // Problems of residues: unknown ones (left out of the structure, so that other problems can be
+    // found too) and settings that match nothing. The caller must throw them.
     Missing problems;
 };
 

@@ -21,10 +21,10 @@ struct ResidueRange {
 // that differ in the residue's name alone too, as long as each has an alternate location.
 std::vector<ResidueRange> find_residues(const Structure& structure);
 
-// The atom's chain, or its segment where the file has no chains.
+// The atom's chain, or its segment if the file has no chains.
 const std::string& chain_of(const Structure& structure, std::size_t atom);
 
-// "PRO A 1" as messages name a residue.
+// "PRO A 1", the name of a residue in messages.
 std::string residue_label(const Structure& structure, const ResidueRange& residue);
 
 std::optional<std::size_t> find_atom(const Structure& structure, const ResidueRange& residue,
@@ -45,7 +45,7 @@ Structure with_order(const Structure& structure, std::span<const std::size_t> or
 std::vector<std::size_t> hydrogens_on(const Structure& structure, const ResidueRange& residue,
                                       std::size_t heavy);
 
-// The element of an atom; what its name says where the file has no elements.
+// The element of an atom; guessed from its name if the file has none.
 std::string element_of(const Structure& structure, std::size_t atom);
 
 }  // namespace palpa

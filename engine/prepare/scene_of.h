@@ -1,4 +1,4 @@
-// The scene file of a prepared system.
+// Writes the scene file of a prepared system.
 #pragma once
 #include "math/vec.h"
 #include "molecule/atoms.h"
@@ -16,26 +16,27 @@
 
 namespace palpa {
 
-// What is known of a scene once it was played.
+// Settings of a scene found by playing it.
 struct SceneTuning {
     // The range of forces on the molecule that is felt, pN; unset: constant gains, for a first try.
     std::optional<std::array<double, 2>> feel_pN = {};
     double period_ms = 10;
-    std::optional<std::int64_t> relax_steps = {};  // on loading
-    std::optional<double> region_angstrom = {};    // around what is held; unset: everything moves
-    std::string coupling_note, period_note, region_note;  // comments, a line each
+    std::optional<std::int64_t> relax_steps = {};  // steps of the relaxation on loading
+    std::optional<double> region_angstrom =
+        {};  // region around what is held; unset: everything moves
+    std::string coupling_note, period_note, region_note;  // comments, one line each
 };
 
 struct SceneText {
     std::string title, about, made_by;
     std::string structure = "relaxed.crd", topology = "system.psf";  // file names
     Solvent solvent = Solvent::None;
-    double dielectric = 1;                      // of vacuum, by which charges are divided
-    std::vector<std::string> approximate = {};  // residues whose parameters are
-    std::vector<std::string> rigid = {};        // bonds that do not turn, as [joints] names them
+    double dielectric = 1;  // dielectric in vacuum, by which energies are divided
+    std::vector<std::string> approximate = {};  // residues with approximate parameters
+    std::vector<std::string> rigid = {};        // bonds that do not turn, as in [joints]
 };
 
-// Atoms beyond which forces end at 12 Å.
+// Number of atoms above which the scene gets a cutoff of 12 Å.
 inline constexpr std::size_t most_atoms_all_pairs = 4'000;
 
 // Guarded coupling, every molecule flexible, ions and waters fixed; the hand leads what it holds by

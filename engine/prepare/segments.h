@@ -1,5 +1,5 @@
-// Chains, their ends and gaps, and bonds between side chains: which segments a system has, and
-// which patches they need.
+// Splits a structure into segments: chains with ends and gaps, disulphides, and the patches that
+// they need.
 #pragma once
 #include "charmm/force_field.h"
 #include "charmm/generate.h"

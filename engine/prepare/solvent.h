@@ -1,4 +1,4 @@
-// Whether a prepared system goes with EEF1-SB's implicit water, and what of it is other then.
+// Applies EEF1-SB's implicit water to a prepared system, if possible.
 #pragma once
 #include "charmm/force_field.h"
 #include "charmm/generate.h"
@@ -12,11 +12,11 @@
 
 namespace palpa {
 
-// A system with neutral ionic groups, and the force field that it is typed by.
+// A system with neutral ionic groups, and its force field.
 struct SolvatedSystem {
     ForceField force_field;
     Connectivity connectivity;
-    Topology topology;  // with its solvation
+    Topology topology;  // including solvation
 };
 
 // The same atoms with EEF1-SB's charges; nothing in vacuum, as the settings say, or, where they

@@ -1,4 +1,4 @@
-// The segments of a prepared system, and what each can be in a scene.
+// The segments of a prepared system and their kinds for a scene.
 #pragma once
 #include "molecule/atoms.h"
 #include "molecule/connectivity.h"
@@ -10,9 +10,9 @@
 namespace palpa {
 
 enum class SegmentKind : std::uint8_t {
-    Molecule,  // more than three atoms, all bonded together
+    Molecule,  // more than three atoms in one bonded piece
     Water,
-    Other,  // ions, and whatever is in several pieces
+    Other,  // ions, and segments in several pieces
 };
 
 struct SystemSegment {

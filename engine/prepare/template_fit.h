@@ -1,4 +1,4 @@
-// Whether a residue of the force field is the molecule that a file calls so.
+// Checks whether a residue of the force field is the molecule of this name in a file.
 #pragma once
 #include "charmm/force_field.h"
 #include "molecule/atoms.h"

@@ -1,4 +1,4 @@
-// The ends of amides and the rings of histidines, as they stand and turned over.
+// Hydrogen-bond sites of amides and histidine rings, as they are and flipped.
 #pragma once
 #include "molecule/atoms.h"
 #include "prepare/hydrogen_bonds.h"
@@ -10,7 +10,7 @@
 
 namespace palpa {
 
-// The bond that an end turns about, and the atoms that turn: of ASN, GLN, else of a histidine.
+// The rotation axis and the atoms that turn, for ASN, GLN, or a histidine.
 struct TurnedAtoms {
     std::array<std::string_view, 2> axis;
     std::vector<std::string_view> atoms;
@@ -23,8 +23,8 @@ TurnedAtoms turned_atoms_of(std::string_view residue);
 std::vector<HydrogenSite> find_turned_sites(const Structure& structure, const ResidueRange& residue,
                                             bool is_flipped, std::string_view histidine);
 
-// Turns the end of an amide, or the ring of a histidine, by half a turn about its bond, with the
-// hydrogens that are on it.
+// Flips the end of an amide, or the ring of a histidine, by half a turn about its bond, with its
+// hydrogens.
 void flip(Structure& structure, const ResidueRange& residue);
 
 }  // namespace palpa

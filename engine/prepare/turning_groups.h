@@ -1,4 +1,4 @@
-// Which atoms may turn together: rotors and waters, found by their bonds.
+// Finds groups of atoms that turn together: rotors and waters, by their bonds.
 #pragma once
 #include "prepare/bond_graph.h"
 #include "prepare/orient.h"
@@ -12,15 +12,15 @@
 
 namespace palpa {
 
-// What turns as one body.
+// A group that turns as one body.
 struct TurningGroup {
     OrientedGroup::Kind kind;
-    std::uint32_t centre;               // stays where it is
-    std::optional<std::uint32_t> axis;  // the other atom of the axis; none: any rotation
+    std::uint32_t centre;               // fixed centre
+    std::optional<std::uint32_t> axis;  // other atom of the axis; unset: any rotation
     std::vector<std::uint32_t> moved;
-    double period = 2 * std::numbers::pi;  // rad, after how much of a turn it is the same
-    double reach = 0;                      // Å, of the moved atoms from the centre
-    std::vector<std::uint32_t> dihedrals, impropers;  // that change as it turns
+    double period = 2 * std::numbers::pi;  // period of its symmetry, rad
+    double reach = 0;                      // largest distance of the moved atoms from the centre, Å
+    std::vector<std::uint32_t> dihedrals, impropers;  // terms that change as it turns
 };
 
 // By kind, then by atom; only those all of whose hydrogens are in `built`. Terms are left empty.

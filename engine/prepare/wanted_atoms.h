@@ -1,4 +1,4 @@
-// Which atoms and bonds a residue is to have, its patches included.
+// The atoms and bonds that a residue with its patches should have.
 #pragma once
 #include "charmm/force_field.h"
 #include "charmm/generate.h"
@@ -17,11 +17,11 @@
 
 namespace palpa {
 
-// What a residue is to consist of, once its patches are in.
+// The required atoms of a residue with its patches.
 struct WantedAtoms {
-    std::map<std::string, std::string, std::less<>> elements;  // of each atom
+    std::map<std::string, std::string, std::less<>> elements;  // element of each atom
     std::vector<std::array<std::string, 2>> bonds;             // within the residue
-    std::vector<std::array<std::string, 4>> dihedral_atoms;    // of the IC table
+    std::vector<std::array<std::string, 4>> dihedral_atoms;    // dihedrals of the IC table
     std::vector<double> dihedrals;                             // rad
 
     bool has(std::string_view name) const { return elements.contains(name); }

@@ -1,4 +1,4 @@
-// Which shapes of a large scene are worth drawing: those that something else does not hide.
+// Selects the visible shapes of a large scene.
 #pragma once
 #include "render/frame_scene.h"
 #include "render/gpu_frame.h"
@@ -9,7 +9,7 @@
 
 namespace palpa {
 
-// Omits shapes that cannot be seen. One for many frames: it keeps its memory.
+// Omits invisible shapes. Reuse one instance for many frames to keep its memory.
 class DrawnShapes {
 public:
     // Of the scene's spheres and cones, in their order, those that may be seen. Omitted are
@@ -25,15 +25,15 @@ public:
     const std::vector<ConeShape>& cones() const noexcept { return cones_; }
 
 private:
-    // A ball around a shape as the camera sees it.
+    // The bounding ball of a shape in camera space.
     struct Bound {
-        float x, y;       // of its centre in the picture, pixels from the upper left
-        float distance;   // of its centre, in front of the camera, Å
+        float x, y;       // centre in the picture, pixels from the upper left
+        float distance;   // distance of its centre in front of the camera, Å
         float radius;     // Å
-        float reach;      // pixels by which it may reach to either side of its centre
+        float reach;      // largest extent to either side of its centre, pixels
         float thickness;  // Å: the shape's own radius
-        bool is_drawn;    // it is in view, and not thinned out
-        bool is_free;     // to be left out: not on top
+        bool is_drawn;    // visible and not thinned out
+        bool is_free;     // may be left out: not on top
     };
     Bound bound_of(const glm::vec3& centre, float radius, float thickness) const;
     void find_bounds(const FrameScene& scene, const glm::mat4& view);
@@ -45,8 +45,8 @@ private:
 
     GpuFrame frame_{};
     std::int32_t width_ = 0, height_ = 0;
-    std::vector<float> covered_;          // of each pixel: something is nearer than this, Å
-    std::vector<std::uint32_t> nearest_;  // of each 2 x 2 pixels, from 1
+    std::vector<float> covered_;          // for each pixel: distance that is covered, Å
+    std::vector<std::uint32_t> nearest_;  // nearest shape of each 2 x 2 pixels, from 1
     std::vector<Bound> sphere_bounds_, cone_bounds_;
     std::vector<SphereShape> spheres_;
     std::vector<ConeShape> cones_;

@@ -14,16 +14,16 @@ struct FilmSettings {
     // ffmpeg knows the kind by its ending: .mp4, .mkv, .mov, .webm. Without an ending: a folder for
     // numbered pictures, and no film.
     std::filesystem::path file;
-    double per_second = 25;   // pictures
-    bool overwrites = false;  // a film, and pictures, that this program made before
+    double per_second = 25;   // pictures per second
+    bool overwrites = false;  // replaces a film and pictures that this program made before
 };
 
-// What became of it.
+// The result of a film.
 struct FilmEnd {
-    bool is_done = false;          // what was asked for is there
-    bool is_film = false;          // the file is there, and its pictures are gone
-    std::filesystem::path folder;  // else where the pictures are
-    std::string why;               // where it is not done: a sentence
+    bool is_done = false;          // the requested result exists
+    bool is_film = false;          // the film file exists, and its pictures were removed
+    std::filesystem::path folder;  // otherwise the folder with the pictures
+    std::string why;               // the reason of a failure, a sentence
 };
 
 // Pictures go to the folder FILE-frames, or FILE where it has no ending, 00000.png and on. One
@@ -34,11 +34,11 @@ public:
     // replace.
     explicit Film(const FilmSettings& settings);
 
-    // All of one size. Throws LoadError where it cannot be written.
+    // Adds a picture; all must have the same size. Throws LoadError if it cannot be written.
     void add(const Picture& picture);
     std::size_t frame_count() const noexcept { return count_; }
 
-    // Runs ffmpeg. What it cannot do leaves the pictures where they are.
+    // Runs ffmpeg. If that fails the pictures stay.
     FilmEnd finish();
 
 private:
@@ -47,7 +47,7 @@ private:
     std::size_t count_ = 0;
 };
 
-// The same look before anything long is done. Throws LoadError as the constructor does.
+// Checks the settings before long work. Throws LoadError as the constructor does.
 void check_film(const FilmSettings& settings);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// Where fonts are that words are written with.
+// Finds fonts for text in pictures.
 #pragma once
 #include <filesystem>
 #include <vector>

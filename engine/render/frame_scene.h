@@ -1,4 +1,4 @@
-// What one picture shows, as plain shapes. Lengths in Å, colours in linear RGB from 0 to 1.
+// The content of one picture as plain shapes. Lengths in Å, colours in linear RGB from 0 to 1.
 #pragma once
 #include <cstdint>
 #include <glm/vec2.hpp>
@@ -67,12 +67,12 @@ struct FrameScene {
     // Instead of it alpha is 0 where nothing is, and less than 1 where only translucent things are.
     // Fog still fades into the colour.
     bool clear_background = false;
-    int outline = 1;        // its width in pixels
-    bool occlusion = true;  // crevices are darker; without, a picture costs less
-    bool is_fine = false;   // crevices without grain, for pictures that have the time
-    // Of very many shapes smaller than a pixel not all are drawn (render/drawn_shapes.h).
+    int outline = 1;        // width in pixels
+    bool occlusion = true;  // darker crevices; costs drawing time
+    bool is_fine = false;   // smoother occlusion, for pictures without a time limit
+    // Thins out very many shapes smaller than a pixel (render/drawn_shapes.h).
     bool is_coarse = false;
-    bool shadows = false;  // of opaque things upon each other; everything is drawn once more
+    bool shadows = false;  // shadows of opaque objects; everything is drawn once more
 };
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// A frame as its shaders have it: the layouts of shaders/frame.glsl, and the images' formats.
+// The frame data for shaders: the layouts of shaders/frame.glsl, and image formats.
 #pragma once
 #include "render/frame_scene.h"
 
@@ -16,10 +16,10 @@ inline constexpr VkFormat seen_format = VK_FORMAT_R32G32_UINT, depth_format = VK
                           colour_format = VK_FORMAT_R8G8B8A8_UNORM,
                           drawn_format = VK_FORMAT_R8G8B8A8_SRGB;
 
-// What is seen at a pixel.
+// The visible object at a pixel.
 struct Seen {
-    std::uint32_t id;  // of a shape or a triangle from 1, 0 where nothing is
-    float distance;    // in front of the camera
+    std::uint32_t id;  // number of the shape or triangle from 1; 0: nothing
+    float distance;    // distance from the camera
 };
 inline constexpr float nowhere =
     1e9F;  // the distance of nothing, for shaders: a number that they can reckon with
@@ -37,10 +37,10 @@ struct GpuVertex {
 // Where the light of shadows comes from: a camera far away, whose picture has everything. In view
 // space.
 struct Sun {
-    glm::vec3 centre;   // where it looks
-    float distance;     // from there
-    float scale;        // of its projection
-    std::int32_t size;  // of its picture, in pixels either way
+    glm::vec3 centre;   // centre of its view
+    float distance;     // distance from the centre
+    float scale;        // scale of its projection
+    std::int32_t size;  // size of its picture, pixels each way
 };
 
 struct GpuFrame {
@@ -52,7 +52,7 @@ struct GpuFrame {
     std::uint32_t last_sphere_below, last_cone_below;
     std::uint32_t shapes, layer_room;
     glm::ivec2 origin;
-    Sun sun;  // where there are shadows
+    Sun sun;  // used with shadows
 };
 static_assert(sizeof(GpuFrame) <= 128, "push constants");
 

@@ -1,4 +1,4 @@
-// Room on the device for the lists of translucent layers, of shaders/layers.glsl.
+// Device memory for the lists of translucent layers (shaders/layers.glsl).
 #pragma once
 #include "gpu/device.h"
 #include "gpu/resources.h"
@@ -17,14 +17,14 @@ public:
     // Throws GpuError where the device cannot have one that large.
     void reserve(VkExtent2D size);
 
-    // How many layers there is room for.
+    // Number of layers that fit.
     std::uint32_t room() const noexcept { return room_; }
 
     // Before the layers are drawn; once they are drawn, outside of a pass.
     void record_clear(VkCommandBuffer commands) const;
     void record_drawn(VkCommandBuffer commands) const;
 
-    // Of the last recorded picture, whose commands are done.
+    // Whether the last recorded picture, whose commands are done, needed more layers.
     bool had_too_little_room() const noexcept;
 
     VkBuffer handle() const noexcept { return lists_.handle(); }

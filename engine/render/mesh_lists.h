@@ -1,4 +1,4 @@
-// The triangles of a frame's meshes, as they are drawn: in view space, those in the picture only.
+// The visible triangles of a frame's meshes in view space.
 #pragma once
 #include "render/frame_scene.h"
 #include "render/gpu_frame.h"
@@ -12,7 +12,7 @@
 
 namespace palpa {
 
-// Some of the triangles, by number.
+// A range of triangles.
 struct TriangleRange {
     std::size_t first = 0, count = 0;
     std::size_t end() const noexcept { return first + count; }
@@ -26,7 +26,8 @@ public:
     void build(const std::vector<MeshShape>& meshes, const glm::mat4& view, const GpuFrame& frame);
 
     const std::vector<GpuVertex>& vertices() const noexcept { return vertices_; }
-    std::span<const std::uint32_t> picks() const noexcept { return picks_; }  // of triangles
+    // Pick of each triangle.
+    std::span<const std::uint32_t> picks() const noexcept { return picks_; }
 
     // Those wholly in the picture stand apart from those across its edges: see frame.glsl on
     // `nowhere`.
@@ -39,16 +40,16 @@ public:
 
 private:
     struct Corners {
-        std::array<std::uint32_t, 3> of;  // in `placed_`
+        std::array<std::uint32_t, 3> of;  // indices into `placed_`
         std::uint32_t pick;
     };
 
     void add_mesh(const MeshShape& mesh, const glm::mat4& view, const GpuFrame& frame);
     void number_triangles();
 
-    // Kept from frame to frame for their memory.
+    // Reused between frames for their memory.
     std::vector<GpuVertex> placed_;
-    std::vector<std::uint8_t> outside_;  // of each of them: past which sides of the view
+    std::vector<std::uint8_t> outside_;  // for each vertex: the sides of the view that it is beyond
     std::array<std::vector<Corners>, 4> kinds_;
 
     std::vector<GpuVertex> vertices_;

@@ -14,8 +14,8 @@ namespace palpa {
 struct Picture {
     std::uint32_t width = 0, height = 0;
     std::vector<std::uint8_t> rgba;    // 4 bytes a pixel, sRGB and alpha
-    std::vector<std::uint32_t> picks;  // what is seen: a shape's `pick`, or nothing_seen
-    std::vector<float> depth;          // Å in front of the camera; infinity where nothing is
+    std::vector<std::uint32_t> picks;  // visible shape's `pick`, or nothing_seen
+    std::vector<float> depth;          // depth in front of the camera, Å; infinity for nothing
 
     static constexpr std::uint32_t nothing_seen = UINT32_MAX;
 };
@@ -42,7 +42,7 @@ std::uint8_t srgb_code(float light);
 // letters do. What is clear gets as opaque as that.
 void lay_over(Picture& picture, int x, int y, const PixelColour& colour, float opacity);
 
-// What is wanted of a picture: the colours cost the least.
+// The requested content of a picture; colours cost the least.
 enum class PictureContent { Colours, All };
 
 // Colours that are times their alpha become what they are without it; where alpha is 0, black.

@@ -1,4 +1,4 @@
-// Pictures on the graphics device, ready to be copied into an image of a window.
+// Pictures in device memory, ready to be copied into an image of a window.
 #pragma once
 #include "gpu/device.h"
 #include "gpu/resources.h"
@@ -27,7 +27,7 @@ private:
     VkExtent2D each_;  // pixels
     std::size_t count_;
     std::uint32_t columns_ = 1;
-    Image image_;  // side by side, row by row
+    Image image_;  // all pictures side by side in rows
 };
 
 }  // namespace palpa

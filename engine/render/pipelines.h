@@ -1,4 +1,4 @@
-// The renderer's passes, pipelines and descriptors: what stays the same in every frame.
+// The constant Vulkan objects of the renderer: passes, pipelines and descriptors.
 #pragma once
 #include "gpu/device.h"
 
@@ -13,7 +13,7 @@ struct FrameResources {
     VkImageView seen = VK_NULL_HANDLE, sun_seen = VK_NULL_HANDLE;
 };
 
-// Handles to be used, not changed.
+// Handles for use; do not change them.
 class Pipelines {
 public:
     explicit Pipelines(const GpuDevice& device);
@@ -21,16 +21,16 @@ public:
     Pipelines& operator=(const Pipelines&) = delete;
     ~Pipelines();
 
-    // While no commands that read the set are under way.
+    // Call while no commands that read the set are in flight.
     void write_descriptors(VkDescriptorSet written, const FrameResources& resources) const;
 
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkDescriptorSet set = VK_NULL_HANDLE, sun_set = VK_NULL_HANDLE;
 
-    // Into `seen` and depth: what is seen.
+    // Writes `seen` and depth.
     VkRenderPass shape_pass = VK_NULL_HANDLE;
     VkPipeline spheres = VK_NULL_HANDLE, cones = VK_NULL_HANDLE, triangles = VK_NULL_HANDLE;
-    VkPipeline layers = VK_NULL_HANDLE;  // not into these, but into the lists of layers
+    VkPipeline layers = VK_NULL_HANDLE;  // writes the lists of layers instead
 
     // Into the colours, where depth lets it. `shade_meshes` is `shade` where triangles are seen
     // too, `shade_all` with shadows as well; `compose` lays the layers over what is there.

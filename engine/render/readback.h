@@ -1,4 +1,4 @@
-// Images of the device, brought to the processor.
+// Reads images of the device back to the host.
 #pragma once
 #include "gpu/device.h"
 #include "gpu/resources.h"
@@ -33,7 +33,7 @@ private:
     Buffer buffer_;
 };
 
-// The same for an image that shaders read before and afterwards.
+// The same for an image that shaders read before and after.
 void record_between_reads(VkCommandBuffer commands, VkImage image, VkOffset2D from,
                           const Readback& readback);
 

@@ -1,5 +1,5 @@
-// What is seen from one place: shapes and triangles on the device, and the images that they are
-// drawn into.
+// The view from one place: shapes and triangles on the device, and the images into which they are
+// drawn.
 #pragma once
 #include "gpu/resources.h"
 #include "render/frame_scene.h"
@@ -48,13 +48,13 @@ private:
     const GpuDevice* device_;
     const Pipelines* pipelines_;
     VkExtent2D size_{0, 0};
-    Image seen_, depth_;  // seen: which shape or triangle, and how far
+    Image seen_, depth_;  // seen: number of shape or triangle, and distance
     Framebuffer framebuffer_;
     MeshLists meshes_;
     UploadBuffer shapes_, vertices_;
 };
 
-// Draws that many vertices, which a shader makes up.
+// Draws this number of vertices, which the shader generates.
 void draw_vertices(VkCommandBuffer commands, VkPipeline pipeline, std::size_t vertices);
 
 void begin_pass(VkCommandBuffer commands, VkRenderPass pass, const Framebuffer& framebuffer,

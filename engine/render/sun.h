@@ -9,10 +9,10 @@
 
 namespace palpa {
 
-// Around all that is opaque and not on top.
+// The sun around all opaque objects that are not on top.
 Sun find_sun(const FrameScene& scene, const glm::mat4& view);
 
-// From view space to the sun's own, which light.glsl has as well.
+// Transforms view space to the sun's space, as in light.glsl.
 glm::mat4 sun_matrix(const Sun& sun);
 
 // The sun's frame of the same scene.

@@ -1,4 +1,4 @@
-// Words on pictures, drawn by FreeType. A program that was built without it writes none.
+// Draws text on pictures by FreeType. A program built without FreeType draws none.
 #pragma once
 #include "render/picture.h"
 
@@ -10,7 +10,7 @@
 
 namespace palpa {
 
-// Of a line of text, pixels: from the top of the highest letter to the bottom of the lowest.
+// Size of a line of text, pixels: from the top of the highest letter to the bottom of the lowest.
 struct TextSize {
     int width = 0, height = 0;
 };
@@ -52,7 +52,7 @@ private:
     std::unique_ptr<Font> font_;
 };
 
-// With the first of list_font_files() that can be read. Throws LoadError where none can.
+// A painter with the first readable font of list_font_files(). Throws LoadError if there is none.
 TextPainter open_text_painter();
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// What a scene file chooses from, with the names that it has for them.
+// The enumerations of a scene file with their names in the file.
 #pragma once
 #include "core/choices.h"
 
@@ -15,8 +15,8 @@ inline constexpr std::array<std::string_view, 6> motion_names{
 enum class Shape { Rigid, Flexible };
 inline constexpr std::array<std::string_view, 2> shape_names{"rigid", "flexible"};
 
-// What stands for the water around the molecules: nothing, or EEF1-SB (charmm/solvation.h), with
-// neutral ionic groups and a dielectric of 1.5 r.
+// Solvent model: none, or EEF1-SB (charmm/solvation.h) with neutral ionic groups and a dielectric
+// of 1.5 r.
 enum class Solvent { None, Eef1Sb };
 inline constexpr std::array<std::string_view, 2> solvent_names{"none", "eef1-sb"};
 
@@ -32,12 +32,12 @@ inline constexpr std::array<std::string_view, 3> engine_protocol_names{"any", "2
 enum class PairPrecision { Double, Fast };
 inline constexpr std::array<std::string_view, 2> pair_precision_names{"double", "fast"};
 
-// What a choice was called before, which is refused with the name that it has now.
+// A former name of a choice, which is refused with its present name.
 struct RenamedChoice {
     std::string_view before, now;
 };
 
-// What counts where active joints are chosen.
+// The weight for the selection of active joints.
 enum class JointWeights { Acceleration, Inertia, PerJoint, InverseMovedAtoms, HandProximity };
 inline constexpr std::array<std::string_view, 5> joint_weight_names{
     "acceleration", "inertia", "per-joint", "inverse-moved-atoms", "hand-proximity"};
@@ -62,7 +62,7 @@ enum class CouplingMode {
 inline constexpr std::array<std::string_view, 6> coupling_mode_names{"1", "2", "3",
                                                                      "4", "5", "guarded"};
 
-// The laws of guarded coupling, and what carries the workspace.
+// Laws of guarded coupling, and workspace mapping.
 enum class ForceLawChoice { Printed, Calibrated, Constant, Perceptual };
 inline constexpr std::array<std::string_view, 4> force_law_names{"printed", "calibrated",
                                                                  "constant", "perceptual"};
@@ -72,16 +72,16 @@ inline constexpr std::array<std::string_view, 3> displacement_law_names{"repaire
 enum class WorkspaceChoice { Clutch, Bubble, Drift };
 inline constexpr std::array<std::string_view, 3> workspace_names{"clutch", "bubble", "drift"};
 
-// How a hand takes hold when nobody looks: a window always has the ramp.
+// How the force of a headless run begins; a window always uses the ramp.
 enum class Engage { AtOnce, Ramp };
 inline constexpr std::array<std::string_view, 2> engage_names{"at-once", "ramp"};
 
-// Whom a scene is for.
+// Audience of a scene.
 enum class SceneLevel { Unstated, Beginner, Student, Researcher };
 inline constexpr std::array<std::string_view, 4> scene_level_names{"unstated", "beginner",
                                                                    "student", "researcher"};
 
-// What a step of a lesson looks at.
+// The quantity that a step of a lesson checks.
 enum class LessonQuantity {
     Distance,
     Force,
@@ -153,7 +153,7 @@ inline constexpr std::array<std::string_view, 3> shown_bond_names{"none", "in-ha
 enum class ShownHydrogens { All, Polar, None };
 inline constexpr std::array<std::string_view, 3> shown_hydrogen_names{"all", "polar", "none"};
 
-// Shadows of opaque things upon each other.
+// Shadows of opaque objects on each other.
 enum class Shadows { None, Soft };
 inline constexpr std::array<std::string_view, 2> shadow_names{"none", "soft"};
 // Of which parts the force on what is in the hand is shown: as a whole, and besides what the

@@ -1,4 +1,4 @@
-// What a scene file says, as plain data with defaults; nothing is loaded yet.
+// The content of a scene file as plain data with defaults; nothing is loaded yet.
 #pragma once
 #include "core/load_error.h"
 #include "core/units.h"
@@ -26,16 +26,17 @@ struct ForceFieldDescription {
 struct MoleculeDescription {
     std::string name;
     std::filesystem::path structure;
-    std::filesystem::path topology;  // empty: the force field's residues tell
+    std::filesystem::path topology;  // empty: from the force field's residues
     std::string segment;
-    std::string reference_atom;  // that stands for the molecule's place: "OH2", or "25 CG"
+    std::string reference_atom;  // atom that marks the molecule's position: "OH2", or "25 CG"
     Motion motion = Motion::Fixed;
     Shape shape = Shape::Rigid;
     bool structural_water = false;  // its waters are part of the structure, in implicit water
     // Atoms ("25 CA") or residues ("25") that springs hold where the structure has them.
     std::vector<std::string> anchors;
     double anchor_kcal_per_mol_angstrom2 = 5;
-    std::vector<std::string> approximate;  // residues whose types, charges and parameters are
+    std::vector<std::string>
+        approximate;  // residues with approximate types, charges and parameters
 };
 
 // A remote engine that moves all atoms, over IMD, in place of our own mechanics.
@@ -43,13 +44,13 @@ struct EngineDescription {
     std::string address = "127.0.0.1:8888";
     EngineProgram program = EngineProgram::Unknown;
     EngineProtocol protocol = EngineProtocol::Any;
-    std::filesystem::path atoms;  // which of its atoms are the scene's; empty: all, in this order
-    std::int64_t rate = 0;        // steps of the engine between frames; 0: as it has it
-    double force_scale = 1;       // the engine's share of the force that the hand feels
-    double most_force_nN = 1;     // of the spring between hand and atoms
-    double smoothing_ms = 50;     // time constant of the low-pass of what is held
-    double late_s = 1;            // without a frame for so long, no force
-    double wait_s = 10;           // for the first frame
+    std::filesystem::path atoms;  // match of its atoms to the scene's; empty: all, in this order
+    std::int64_t rate = 0;        // steps of the engine between frames; 0: the engine's setting
+    double force_scale = 1;       // multiple of the hand's force that acts on the engine's atoms
+    double most_force_nN = 1;     // largest force of the spring between hand and atoms
+    double smoothing_ms = 50;     // time constant of the low-pass for the held atoms
+    double late_s = 1;            // time without a frame after which the force is off
+    double wait_s = 10;           // time to wait for the first frame
 
     friend bool operator==(const EngineDescription&, const EngineDescription&) = default;
 };
@@ -60,12 +61,12 @@ struct JointsDescription {
     bool hydroxyl = true, thiol = true, ammonium = true;
     bool methyl = false, amide = false, amide_nh2 = false, guanidinium_nh2 = false;
     std::vector<std::string> turn, rigid, springs;  // bonds: "A 25 CB CG", "A 25 C 26 N"
-    std::optional<double> within_angstrom;          // of `around`; unset: everywhere
+    std::optional<double> within_angstrom;          // distance from `around`; unset: everywhere
     std::string around;                             // a molecule; empty: the one in the hand
-    std::optional<double> region_angstrom;          // around what hands hold; unset: no region
+    std::optional<double> region_angstrom;          // region around what hands hold; unset: none
 };
 
-// How flexible molecules come to rest.
+// How flexible molecules relax.
 struct StaticsDescription {
     std::optional<RelaxMethod> method;  // unset: see method_of
     std::int64_t steps = 1;             // in each period
@@ -74,13 +75,13 @@ struct StaticsDescription {
     // between two linearisations.
     double near_angstrom = 6;
     double renew_angstrom = 0.1;
-    std::int64_t responses = 0;  // of second order, in whose span a step answers; 0: all
-    double renewal_ms = 0;       // declared: from the request of a linearisation to its use
-    bool renews_beside = false;  // a thread of its own, as a live session has it; no key
+    std::int64_t responses = 0;  // second order: dimension of the subspace of a step; 0: all
+    double renewal_ms = 0;       // declared time from the request of a linearisation to its use
+    bool renews_beside = false;  // renewals on their own thread, as in a live session; no key
     PairPrecision pairs = PairPrecision::Fast;
     std::optional<double> cutoff_angstrom;  // unset: all pairs
-    std::int64_t active = 1'000'000;        // degrees of freedom at most
-    std::optional<double> budget_us;        // of a step; unset: none
+    std::int64_t active = 1'000'000;        // active degrees of freedom
+    std::optional<double> budget_us;        // time budget of a step; unset: none
     JointWeights weights = JointWeights::HandProximity;
     std::int64_t choose_every = 10;  // steps
     double rest_kcal_per_mol = 0.05;
@@ -92,9 +93,9 @@ struct StaticsDescription {
 RelaxMethod method_of(const StaticsDescription& statics) noexcept;
 
 struct GrabDescription {
-    std::string molecule;       // that the hand moves
-    std::string measured_from;  // molecule whose reference atom distances start at
-    std::string atom;           // "25 CA", or a residue "25": held by a spring; empty: no spring
+    std::string molecule;       // molecule that the hand moves
+    std::string measured_from;  // molecule from whose reference atom distances are measured
+    std::string atom;           // "25 CA", or a residue "25", held by a spring; empty: no spring
     double spring_kcal_per_mol_angstrom2 = 20;
 
     friend bool operator==(const GrabDescription&, const GrabDescription&) = default;
@@ -125,7 +126,7 @@ struct HandDescription {
     friend bool operator==(const HandDescription&, const HandDescription&) = default;
 };
 
-// On a device like the first hand's, with the same coupling.
+// A second hand on a device like that of the first, with the same coupling.
 struct SecondHand {
     GrabDescription grab;
     HandDescription hand;
@@ -146,7 +147,7 @@ struct CouplingDescription {
     double clamp_N = 3;
     double F_h1_N = 1, F_h2_N = 3, F_0_nN = 1.5, A_f_min = 0.64e9, A_f_max = 5.1e9;  // eq. 2
     double gamma_per_N = 10e11, F_off_pN = 20, A_d_min = 0.005e9, A_d_max = 0.25e9;  // eq. 3
-    double A_f = 0.64e9, A_d = 0.25e9;  // the constant gains
+    double A_f = 0.64e9, A_d = 0.25e9;  // constant gains
 
     // What must be felt, of the force on the molecule, and how exactly; unset: what the laws and
     // the statics give.
@@ -158,7 +159,7 @@ struct CouplingDescription {
     DisplacementLawChoice displacement_law = DisplacementLawChoice::Repaired;
     GainShape gain_shape = GainShape::Scalar;
     WorkspaceChoice workspace = WorkspaceChoice::Clutch;
-    double F_lo_pN = 20, F_hi_nN = 3;  // of the perceptual law
+    double F_lo_pN = 20, F_hi_nN = 3;  // perceptual law
     double damping_N_s_per_m = 0.5;
     double stop_nN = 10;
     std::int64_t pairs_per_tick = 130'000;
@@ -182,11 +183,11 @@ struct LessonStepDescription {
     std::string name, text, task;
     LessonQuantity quantity = LessonQuantity::Distance;
     std::optional<double> at_least, at_most;
-    double for_s = 0;               // without a break
-    std::string view{};             // a saved view that is shown as the step begins; empty: none
-    std::vector<std::string> of{};  // selections that the quantity is of
+    double for_s = 0;               // for which the value must stay accepted
+    std::string view{};             // saved view at the start of the step; empty: none
+    std::vector<std::string> of{};  // selections for the quantity
     LessonPlot plot = LessonPlot::None;
-    std::optional<LessonQuestion> question{};  // in place of a quantity
+    std::optional<LessonQuestion> question{};  // question in place of a quantity
     // What an operator of `palpa lessons play` does: takes something in hand, changes the coupling,
     // then leads what it holds, Å from where the scene began, by seconds since the step began.
     std::string operator_take{};
@@ -199,8 +200,8 @@ struct LessonStepDescription {
 struct ViewLayer {
     Representation representation = Representation::BallAndStick;
     std::string of{};                      // a selection (molecule/select.h); empty: all atoms
-    std::optional<Colouring> colouring{};  // unset: as everything
-    double opacity = 1;                    // of a surface
+    std::optional<Colouring> colouring{};  // unset: as the rest
+    double opacity = 1;                    // opacity of a surface
     TextPlace place{};
 
     friend bool operator==(const ViewLayer& a, const ViewLayer& b) {
@@ -209,14 +210,14 @@ struct ViewLayer {
     }
 };
 
-// A view to come back to.
+// A saved view.
 struct SavedView {
     std::string name;
     std::array<double, 3> camera{0, 0, 1};  // azimuth and elevation in degrees, zoom
     std::string look_at{};                  // a selection; empty: all atoms
-    std::array<double, 3> shift{};          // Å, from the middle of it to what is looked at
-    std::optional<Representation> representation{};  // unset: as the scene's
-    std::vector<ViewLayer> layers{};                 // while it is shown, beside the scene's
+    std::array<double, 3> shift{};          // shift of the view's centre from the middle of it, Å
+    std::optional<Representation> representation{};  // unset: that of the scene
+    std::vector<ViewLayer> layers{};                 // additional layers while it is shown
     TextPlace place{};
 
     friend bool operator==(const SavedView& a, const SavedView& b) {
@@ -225,31 +226,31 @@ struct SavedView {
     }
 };
 
-// Marks that are drawn on request.
+// Additional marks in the picture.
 struct ViewMarks {
     std::vector<std::string> measures{};  // two to four selections each, with ';' between them
     ShownBonds contacts = ShownBonds::None;
     ShownForces forces = ShownForces::Hand;
-    bool ghost = false;  // what is in the hand as it was at the start
-    double trail_s = 0;  // the way of what is in the hand over the last seconds; 0: none
+    bool ghost = false;  // shows the held molecule at its start
+    double trail_s = 0;  // path of the held molecule over the last seconds; 0: none
 
     friend bool operator==(const ViewMarks&, const ViewMarks&) = default;
 };
 
 struct ViewDescription {
-    std::optional<Representation> representation;  // unset: what shows the scene best
+    std::optional<Representation> representation;  // unset: chosen for the scene
     Colouring colouring = Colouring::Chain;
     ShownBonds hydrogen_bonds = ShownBonds::InHand;
     std::array<double, 3> camera{0, 0, 1};  // azimuth and elevation in degrees, zoom
     std::string look_at;                    // a molecule; empty: all of them
-    bool clip = false;                      // nothing in front of the grabbed molecule
+    bool clip = false;                      // hides atoms in front of the grabbed molecule
     std::vector<ViewLayer> layers{};
-    std::vector<std::string> labels{};  // selections whose residues or atoms are named
+    std::vector<std::string> labels{};  // selections to label
     ShownHydrogens hydrogens = ShownHydrogens::All;
     Shadows shadows = Shadows::None;
-    bool occlusion = true;              // crevices are darker
+    bool occlusion = true;              // darker crevices
     std::int64_t outline = 1;           // pixels
-    std::vector<std::string> hidden{};  // selections that are drawn only by layers
+    std::vector<std::string> hidden{};  // selections that only layers draw
     std::vector<SavedView> saved{};     // in the order of the file
     ViewMarks marks{};
 };
@@ -258,8 +259,8 @@ struct SceneDescription {
     std::filesystem::path file;
     std::string title, about;
     SceneLevel level = SceneLevel::Unstated;
-    double minutes = 0;   // that a person spends with it; 0: not stated
-    std::string made_by;  // the command that makes the files it names; empty: they are there
+    double minutes = 0;   // minutes that a person needs; 0: not stated
+    std::string made_by;  // command that makes the files; empty: they exist
     std::string lesson_goal;
     ForceFieldDescription force_field;
     std::vector<MoleculeDescription> molecules;  // in the order of the file
@@ -279,13 +280,13 @@ struct SceneDescription {
     std::int64_t every = 1;
     std::int64_t seed = 1;
 
-    // Where the file (or a setting over it) says a field, by its key in full.
+    // Position of each field in the file or settings, by full key.
     std::map<std::string, TextPlace, std::less<>> places;
 
     // The place of a field for messages: its own, or the file where the default holds.
     TextPlace place_of(std::string_view key) const;
 
-    // Whether something moves by itself: joints, a molecule that turns, one that is free.
+    // Whether something moves by itself: joints, a turning or free molecule.
     bool has_statics() const;
 };
 

@@ -1,5 +1,4 @@
-// What a scene changes while it runs: an [[edits]] table of a scene file, an edit of
-// simulation/edit.h.
+// Edits of a running scene: an [[edits]] table of a scene file, an edit of simulation/edit.h.
 #pragma once
 #include "core/load_error.h"
 #include "scene/choices.h"
@@ -39,10 +38,10 @@ struct LetGoEdit {
 // A residue of the scene's force field, a copy of a molecule, or what is in files, with its
 // reference atom there: of a residue and of files the first one.
 struct AddEdit {
-    std::string residue, copy_of;  // or structure: one of them
+    std::string residue, copy_of;  // exactly one of residue, copy_of, structure
     std::string name;
     std::array<double, 3> at_angstrom{};
-    // As of [molecules.NAME]; no segment: the only one that the file has.
+    // As in [molecules.NAME]; without segment: the only one of the file.
     std::filesystem::path structure{}, topology{};
     std::string segment{};
 
@@ -72,7 +71,7 @@ struct RestraintEdit {
     friend bool operator==(const RestraintEdit&, const RestraintEdit&) = default;
 };
 
-// What is not said stays.
+// Unset fields stay unchanged.
 struct MobilityEdit {
     std::string molecule;
     std::optional<Motion> motion;
@@ -97,7 +96,7 @@ struct CouplingEdit {
     friend bool operator==(const CouplingEdit&, const CouplingEdit&) = default;
 };
 
-// The world as the scene's file has it.
+// Resets the world to the scene's file.
 struct ResetEdit {
     friend bool operator==(const ResetEdit&, const ResetEdit&) = default;
 };
@@ -124,8 +123,8 @@ inline constexpr std::array<std::string_view, std::variant_size_v<EditAction>> e
 inline constexpr std::array<std::string_view, 2> edit_hand_names{"first", "second"};
 
 struct EditDescription {
-    double at_s = 0;       // before the first step at or after this time
-    std::size_t hand = 0;  // whose it is, where it is of a hand: 0 the first, 1 the second
+    double at_s = 0;       // applied before the first step at or after this time
+    std::size_t hand = 0;  // hand that makes it: 0 the first, 1 the second
     EditAction action;
     TextPlace place;  // in the scene file, for messages
 };

@@ -1,5 +1,5 @@
-// All fields of a scene file, each with its key, meaning and range, in one list. Reading, writing
-// and documenting a scene are three visitors of that list.
+// The single list of all fields of a scene file, each with key, meaning and range. Reading, writing
+// and documenting a scene are three visitors of it.
 #pragma once
 #include "scene/description.h"
 
@@ -15,19 +15,19 @@
 
 namespace palpa {
 
-// What a text has to name (scene/edits.h).
+// What a text must name (scene/edits.h).
 enum class TextForm { Any, Molecule, MoleculeOrPart, ResidueOrAtom, Atom };
 
 struct Field {
     std::string_view key;
     std::string_view meaning;
-    double lowest = 0, highest = 0;  // of a number; every one has a range, which a test looks at
-    bool zero = false;               // 0 will do, below `lowest`
+    double lowest = 0, highest = 0;  // range of a number; a test checks that every number has one
+    bool zero = false;               // 0 is allowed, below `lowest`
     bool required = false;
     TextForm form = TextForm::Any;
-    bool is_inline = false;      // a table in braces
-    std::string_view like = {};  // a table with the keys of that one, which is documented
-    std::span<const RenamedChoice> renamed = {};  // of a choice
+    bool is_inline = false;      // an inline table in braces
+    std::string_view like = {};  // a table with the same keys as this one, which is documented
+    std::span<const RenamedChoice> renamed = {};  // former names of a choice
 };
 
 class FieldVisitor {
@@ -39,19 +39,20 @@ public:
 
     virtual void enter_table(const Field& field) = 0;
     virtual void leave_table() = 0;
-    // The tables inside the present one, by name; a reader fills `names`, others go by them.
+    // The tables inside the present one by name: a reader fills `names`, other visitors follow
+    // them.
     virtual void list_tables(const Field& field, std::vector<std::string>& names) = 0;
 
-    // Entries of a list of tables: a reader fills `count` and `place`, others go by them.
+    // Entries of a list of tables: a reader fills `count` and `place`, other visitors follow them.
     virtual void list_entries(const Field& field, std::size_t& count) = 0;
     virtual void enter_entry(const Field& field, std::size_t index, TextPlace& place) = 0;
 
-    // Which of these keys to visit: the one that the file has, or `chosen` where none is read.
+    // The keys to visit: the one in the file, or `chosen` if none is read.
     virtual std::vector<std::size_t> one_of(std::span<const std::string_view> keys,
                                             std::size_t chosen) = 0;
-    // Whether to visit what has no value of its own for "unset"; a reader looks into the file.
+    // Whether to visit an optional part; a reader looks into the file.
     virtual bool is_there(const Field& field, bool there) = 0;
-    // Whether keys are listed for people: then every table is there.
+    // Whether keys are being listed for documentation: then every table exists.
     virtual bool is_listing() const noexcept { return false; }
 
     virtual void real(const Field& field, double& value) = 0;
@@ -108,7 +109,7 @@ void visit_entries(FieldVisitor& visitor, const Field& field, std::vector<Entry>
 
 void visit_scene(FieldVisitor& visitor, SceneDescription& scene);
 
-// What the table [coupling] holds.
+// The keys of the table [coupling].
 void visit_coupling_keys(FieldVisitor& visitor, CouplingDescription& coupling);
 
 // For documentation and messages: every key in full ("molecules.NAME.segment") with its meaning,

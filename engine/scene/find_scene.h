@@ -1,4 +1,4 @@
-// Scenes as people name them: a folder, a file, or one that comes with the program.
+// Finds scenes by folder, file, or the name of a built-in one.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -9,10 +9,10 @@ namespace palpa {
 struct SceneEntry {
     std::string name;  // relative to the folder of the list: "hiv", "hiv/flexible"
     std::filesystem::path file;
-    std::string title{};  // as the file says; may be empty
+    std::string title{};  // title of the file; may be empty
     std::string about{};  // its first sentence
     std::string level{};  // empty: not stated
-    double minutes = 0;   // the same: 0
+    double minutes = 0;   // duration, min; 0: not stated
     bool has_lesson = false;
     bool is_to_be_made =
         false;  // by a command that the file names: its molecules are not there yet

@@ -1,4 +1,4 @@
-// Scene files: TOML, checked on reading.
+// Reads and checks scene files (TOML).
 #pragma once
 #include "scene/description.h"
 

@@ -1,5 +1,5 @@
-// What a line of a scripted run asks for (tools/scripting.md): an edit, in the words of [[edits]],
-// or one of the words that drive the run.
+// Commands of a scripted run (tools/scripting.md): edits as in [[edits]], and commands that drive
+// the run.
 #pragma once
 #include "core/load_error.h"
 #include "scene/description.h"
@@ -19,17 +19,17 @@
 namespace palpa {
 
 struct StepCommand {
-    std::int64_t steps = 1;  // of the simulation
+    std::int64_t steps = 1;  // simulation steps
 };
-// As many steps as begin within that time.
+// Runs the steps that begin within this time.
 struct RunForCommand {
-    double seconds = 0;  // simulated
+    double seconds = 0;  // simulated s
 };
-// Where the hand wants the handle from now on, mm from the centre of the workspace.
+// New target of the hand, mm from the centre of the workspace.
 struct HandCommand {
     std::array<double, 3> place_mm{};
 };
-// How things stand; where `atoms` is given, also of these: an address or a selection.
+// Requests the present state; with `atoms` also the positions of these: an address or a selection.
 struct ReadCommand {
     std::string atoms;
 };
@@ -45,17 +45,17 @@ using RunAction = std::variant<EditAction, StepCommand, RunForCommand, HandComma
                                SaveCommand, HelpCommand, QuitCommand>;
 
 struct RunCommand {
-    std::size_t hand = 0;  // whose it is, as of an EditDescription
+    std::size_t hand = 0;  // hand, as in EditDescription
     RunAction action;
 };
 
-// The most bytes of a line.
+// Largest number of bytes of a line.
 inline constexpr std::size_t most_command_bytes = std::size_t{64} << 10;
 
 // The fields of a line.
 void visit_run_command(FieldVisitor& visitor, RunCommand& command);
 
-// Those fields for people.
+// These fields with their documentation.
 std::vector<FieldNote> list_run_commands();
 
 // A line as the keys of one TOML table, without braces: `take = "moved", hand = "second"`. A word

@@ -1,4 +1,4 @@
-// A scene as TOML again, every field written out.
+// Writes a scene as TOML, with every field.
 #pragma once
 #include "scene/description.h"
 

@@ -1,4 +1,4 @@
-// What a run let a hand feel of what its scene says must be felt, and what was not met for it.
+// Reports whether a run met the scene's requirements for force range and accuracy.
 #pragma once
 #include "haptics/servo.h"
 #include "scene/description.h"
@@ -13,37 +13,37 @@
 namespace palpa {
 
 struct AccuracyReport {
-    // As the scene has it (pN), and what its law makes of both ends (N).
+    // Required range (pN), and forces that the law gives at both ends (N).
     std::optional<std::array<double, 2>> range_pN;
     std::array<double, 2> ends_newton{};
-    double stiffest_share = 0;     // of the cap, the largest that was felt
-    double largest_cap_ratio = 1;  // of A_d over its law, so that the cap held
-    double thermal_share = 0;      // of the time, that the thermal limit reduced the force
+    double stiffest_share = 0;     // largest stiffness felt as a share of the cap
+    double largest_cap_ratio = 1;  // largest cap ratio, A_d over its law
+    double thermal_share = 0;      // share of the time at the thermal limit
 
-    std::optional<double> within_pN;  // as the scene has it
+    std::optional<double> within_pN;  // required error limit
     // What error estimates found: the rendered force less that of all joints; where nothing
     // moves by itself, less that of all pairs in double. Each stands for the steps since the one
     // before, so that it counts for longer where error estimates are rare.
     std::uint64_t estimates = 0;
-    double median_pN = 0, ninety_pN = 0;  // what it is at most half of the time, and 0.9 of it
-    double within_share = 1;              // of the time
-    double active = 0, steps = 0;         // of a step, on average: degrees of freedom, and how many
+    double median_pN = 0, ninety_pN = 0;  // median and 90 % quantile of the error
+    double within_share = 1;              // share of the time within the limit
+    double active = 0, steps = 0;         // mean active degrees of freedom, and steps per period
 
-    double period_share = 0;  // of the declared period, that a step takes in the median
+    double period_share = 0;  // median time of a step as a share of the declared period
 };
 
 // In words, each with its factor: the tolerance, the period, the reach of the handle, the motors.
 struct UnmetRequirements {
-    std::string tolerance, period, reach, motors;  // empty: held
+    std::string tolerance, period, reach, motors;  // empty: met
 
     std::vector<std::string> all() const;
 };
 UnmetRequirements find_unmet(const AccuracyReport& report);
 
-// Gathers it tick by tick and step by step.
+// Gathers the report tick by tick and step by step.
 class AccuracyLog {
 public:
-    // Nothing to tell where the scene says neither range nor tolerance.
+    // Without range and error limit in the scene there is no report.
     AccuracyLog(const SceneDescription& scene, const ServoSettings& servo);
 
     void add(const ServoTick& tick) noexcept;
@@ -61,15 +61,15 @@ private:
     AccuracyReport report_;
     bool is_asked_;
     double cap_N_per_m_ = 0, period_us_;
-    Vec3 rendered_newton_ = Vec3::Zero();  // in the last tick
+    Vec3 rendered_newton_ = Vec3::Zero();  // force of the last tick
     std::uint64_t steps_ = 0, ticks_ = 0, thermal_ticks_ = 0;
 
     struct Found {
         double error_pN;
-        std::uint64_t steps;  // since the error estimate before
+        std::uint64_t steps;  // steps since the previous error estimate
     };
     std::vector<Found> found_;
-    std::uint64_t last_estimate_ = 0;  // its step
+    std::uint64_t last_estimate_ = 0;  // step of the last estimate
 };
 
 }  // namespace palpa

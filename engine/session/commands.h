@@ -1,4 +1,4 @@
-// What may be asked of a running scene, and what it says of itself.
+// Commands to a running scene, and its readout.
 #pragma once
 #include "haptics/exchange.h"
 #include "scene/description.h"
@@ -17,7 +17,7 @@
 
 namespace palpa {
 
-// What a person may change while a scene runs.
+// The settings that a person can change while a scene runs.
 struct LiveSettings {
     CouplingDescription coupling;
     double period_ms = 1;
@@ -27,15 +27,15 @@ struct LiveSettings {
 
 // Commands are taken between two steps, in the order in which they were sent.
 struct Pause {
-    bool paused = true;  // while it lasts nothing moves, and the hand feels nothing
+    bool paused = true;  // while paused nothing moves and the hand has no force
 };
-struct StepOnce {};  // and pause
+struct StepOnce {};  // one step, then pause
 // Load the scene again; the settings stay.
 struct Reset {
-    // On a line, Å: where it is to start from now on, if not where it did.
+    // On a line: new start distance, Å; unset: unchanged.
     std::optional<double> start_angstrom{};
 };
-// An edit is made at once, whatever time it says. A pull lasts until the next one.
+// An edit is made at once, whatever its time. A pull lasts until the next one.
 using Command = std::variant<LiveSettings, ViewSettings, Pause, StepOnce, Reset, EditDescription,
                              PlaybackOrder, ClientPull>;
 
@@ -43,7 +43,7 @@ inline EditDescription edit_now(EditAction action) {
     return {0, 0, std::move(action), {"not done"}};
 }
 
-// What a running scene says, all of one moment between two steps.
+// The state of a running scene, consistent for one moment between two steps.
 struct Readout {
     ContactModel contact;
     std::uint64_t steps = 0;
@@ -53,20 +53,20 @@ struct Readout {
     std::optional<double> error_pN;
     WorkBudget work_budget;
     bool paused = false;
-    bool holds_something = true;      // the hand
-    std::uint64_t refused_edits = 0;  // so far, but for undo and redo
-    std::string problem;              // why the last Reset or edit failed; else empty
-    std::string engine;               // how a remote engine fares, a sentence; empty: there is none
-    std::string edit_under_way;       // its key in a scene file; empty: none
-    std::optional<PlaybackState> playback;  // where a trajectory is played
-    LessonMeasures lesson;                  // where the scene has one
+    bool holds_something = true;            // whether the hand holds something
+    std::uint64_t refused_edits = 0;        // number of refused edits, without undo and redo
+    std::string problem;                    // why the last Reset or edit failed; else empty
+    std::string engine;                     // state of a remote engine as a sentence; empty: none
+    std::string edit_under_way;             // key of the running edit; empty: none
+    std::optional<PlaybackState> playback;  // while a trajectory is played
+    LessonMeasures lesson;                  // if the scene has a lesson
 };
 
-// How the servo fares.
+// The health of the servo thread.
 struct ServoHealth {
     std::uint64_t overruns = 0;  // ticks that were skipped because one began too late
     bool real_time = false;      // the system granted real-time priority
-    bool locked = false;         // and lets memory stay where it is
+    bool locked = false;         // memory is locked in RAM
 };
 
 }  // namespace palpa

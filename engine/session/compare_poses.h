@@ -1,4 +1,4 @@
-// How far molecules are from where they were, as structures are compared.
+// Compares poses of molecules by rms distances.
 #pragma once
 #include "ecs/world.h"
 #include "molecule/symmetry.h"
@@ -12,8 +12,8 @@ namespace palpa {
 
 // rms distances of heavy atoms, Å; 0 where there are none.
 struct PoseDistance {
-    double held = 0;      // of what the first hand holds
-    double backbone = 0;  // N, CA, C and O of all that is not held
+    double held = 0;      // atoms that the first hand holds
+    double backbone = 0;  // N, CA, C and O of all other atoms
     double pocket = 0;    // side chains of residues with a heavy atom within 5 Å of what is held
 };
 
@@ -23,7 +23,7 @@ struct PoseDistance {
 // may change places: all those of what is held together, those of others by residue.
 class PoseComparison {
 public:
-    // The pocket and the symmetries are those of the world as it is.
+    // Determines pocket and symmetries from the present world.
     explicit PoseComparison(const World& world);
 
     // Positions of all atoms of the table.

@@ -1,4 +1,4 @@
-// The atoms of a world as structure files have them: coordinates at this moment, what is bonded.
+// Writes the atoms of a world to structure files: present coordinates and connectivity.
 #pragma once
 #include "core/files.h"
 #include "ecs/world.h"
@@ -26,7 +26,8 @@ bool has_same_atoms(const AtomTable& atoms, const Connectivity& known) noexcept;
 // there is no atom.
 std::vector<std::uint32_t> select_atoms(const World& world, std::span<const std::string> molecules);
 
-// These atoms where they are now. Their chains are their segments; a chain ends with its molecule.
+// A structure of these atoms at their present positions. Chains are the segments; a chain ends with
+// its molecule.
 Structure build_structure(const World& world, std::span<const std::uint32_t> atoms);
 
 // By the ending: .pdb, .ent, .cif, .mmcif, .gro, .crd, .cor; .psf is the topology, with the

@@ -1,4 +1,4 @@
-// The edits of a scene, each until its time.
+// Applies the edits of a scene at their times.
 #pragma once
 #include "scene/description.h"
 
@@ -10,8 +10,7 @@ class EditPlayer {
 public:
     explicit EditPlayer(const SceneDescription& scene) : waiting_(scene.edits) {}
 
-    // Those to be made before the step that begins at that time, in the order of the file; each
-    // once.
+    // The edits due before the step at this time, in the order of the file, each once.
     std::vector<EditDescription> take_due(double time_s);
 
 private:

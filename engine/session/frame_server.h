@@ -1,5 +1,5 @@
-// A running scene as an engine of IMD: its frames for clients that watch, and what one that pulls
-// asks for. Used by the thread that makes the steps, between two of them; never waits for a client.
+// Serves a running scene by IMD: sends frames to clients and receives their pulls. Used by the
+// simulation thread between two steps; never waits for a client.
 #pragma once
 #include "ecs/world.h"
 #include "imd/server.h"
@@ -14,10 +14,10 @@
 namespace palpa {
 
 struct ServeOptions {
-    // Of this machine alone, unless another address of it is given: there is no password.
+    // Address to listen at; the default admits clients on this machine only. There is no password.
     std::string address = "127.0.0.1";
-    std::uint16_t port = imd_port;  // 0: any that is free
-    int version = 2;                // of IMD, or 3
+    std::uint16_t port = imd_port;  // 0: any free port
+    int version = 2;                // IMD version, 2 or 3
     int rate = 0;  // steps between frames; 0: about 30 frames a second of the scene
     bool may_pause = true;
 };
@@ -29,7 +29,7 @@ public:
 
     std::string place() const;  // "127.0.0.1:8888"
     std::size_t clients() const noexcept { return server_.clients(); }
-    bool is_paused() const noexcept { return server_.is_paused(); }  // by a client
+    bool is_paused() const noexcept { return server_.is_paused(); }  // paused by a client
 
     // Waits for at most so long, and returns early where something came.
     void poll(int at_most_ms);

@@ -33,7 +33,7 @@ namespace palpa {
 
 inline constexpr std::string_view journal_mark = "# Palpa journal 1";
 
-// What one tick gave the servo of one hand.
+// The input of one hand's servo in a tick.
 struct JournalHand {
     DeviceReading reading;
     std::uint64_t contact = 0, order = 0;
@@ -48,7 +48,7 @@ struct Journal {
     std::vector<HandDevice> devices;
     std::vector<PlayedEvent> events;
     std::vector<JournalTick> ticks;
-    std::vector<JournalHand> hands;  // of all ticks, one after the other
+    std::vector<JournalHand> hands;  // hands of all ticks, one after the other
     std::optional<std::size_t> first_recorded;
 
     std::span<const JournalHand> hands_of(std::size_t tick) const {
@@ -60,18 +60,18 @@ struct Journal {
 // of one that was cut off does not count.
 Journal parse_journal(std::string_view text, const std::string& file);
 
-// Writes one, line by line.
+// Writes a journal line by line.
 class JournalWriter {
 public:
     explicit JournalWriter(std::span<const HandDevice> devices);
 
     void add(const PlayedEvent& event);
-    void add(std::span<const LiveTick> ticks);  // of all hands
+    void add(std::span<const LiveTick> ticks);  // ticks of all hands
     void begin_recording();
 
-    // What was written since the last call.
+    // The text since the last call.
     std::string take();
-    std::size_t size() const noexcept { return text_.size(); }  // of that, bytes
+    std::size_t size() const noexcept { return text_.size(); }  // size of this text, bytes
 
 private:
     std::string text_;

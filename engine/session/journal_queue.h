@@ -27,7 +27,7 @@ using AllPostNumbers = std::array<PostNumbers, most_hands>;
 
 class JournalQueue {
 public:
-    // `posts`: what servos are sent before the first event.
+    // `posts`: numbers before the first event.
     JournalQueue(std::size_t hands, const AllPostNumbers& posts);
 
     // The simulation's thread, after the event: `posts` are those up to its end.
@@ -39,7 +39,7 @@ public:
     // under way, which stays for the next call. Throws LoadError where the recorder does.
     void hand_to(SessionRecorder& recorder);
 
-    // Ticks that found no room.
+    // Number of lost ticks, when the ring was full.
     std::uint64_t dropped() const noexcept { return ticks_->dropped(); }
 
 private:
@@ -54,9 +54,9 @@ private:
 
     std::size_t hands_;
     std::unique_ptr<Ring<LiveTick, ring_size>> ticks_;
-    std::array<LiveTick, most_hands> waiting_{};  // was popped, and is not yet handed on
+    std::array<LiveTick, most_hands> waiting_{};  // popped tick that is not yet handed on
     bool has_waiting_ = false;
-    AllPostNumbers handed_on_;  // by the events that the recorder has
+    AllPostNumbers handed_on_;  // posts of the events that the recorder has
     std::mutex event_mutex_;
     std::vector<Event> events_;
 };

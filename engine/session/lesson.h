@@ -1,4 +1,4 @@
-// Follows a person through the steps of a scene's lesson.
+// Follows a person through the steps of a lesson.
 #pragma once
 #include "scene/description.h"
 #include "session/reading.h"
@@ -20,31 +20,31 @@ public:
     // (session/lesson_meter.h).
     void update(const Reading& reading, CouplingMode mode,
                 std::span<const double> measured = {}) noexcept;
-    // To the present step's question, counted from 0: the right answer does the step.
+    // Answers the present step's question, counted from 0: the right answer completes the step.
     void answer(std::size_t choice) noexcept;
 
     const std::vector<LessonStepDescription>& steps() const noexcept { return steps_; }
-    // The step to be done now; the number of steps where all are done.
+    // The present step; the number of steps if all are done.
     std::size_t current() const noexcept { return current_; }
     bool is_done() const noexcept { return current_ == steps_.size(); }
-    // The present step was done, and may be left.
+    // Whether the present step is done and may be left.
     bool is_step_done() const noexcept { return step_done_; }
     std::size_t steps_done() const noexcept { return current_ + (step_done_ ? 1 : 0); }
     bool can_go_on() const noexcept { return step_done_ && shown_s_ > shortest_s; }
-    // How much of the present step's time has passed, 0 to 1.
+    // Progress of the present step's time, 0 to 1.
     double share() const noexcept;
-    // Of the present step at the last tick; nothing of a question, and while it is not known.
+    // Value of the present step at the last tick; unset for a question, and while unknown.
     std::optional<double> value() const noexcept { return value_; }
-    // The answer given last to the present step's question.
+    // The last answer to the present step's question.
     std::optional<std::size_t> chosen() const noexcept { return chosen_; }
 
-    // To the next step, where can_go_on(); returns whether it did.
+    // Goes to the next step if can_go_on(); returns whether it did.
     bool go_on() noexcept;
     void skip() noexcept;
     void restart() noexcept;
 
-    static constexpr double shortest_s = 3;  // that a step is on screen
-    static constexpr double ripple_s = 2;    // that a ripple is of
+    static constexpr double shortest_s = 3;  // shortest time of a step on screen
+    static constexpr double ripple_s = 2;    // time window of a ripple
 
 private:
     void begin_step() noexcept;
@@ -56,7 +56,7 @@ private:
     double held_s_ = 0, shown_s_ = 0;
     std::optional<double> value_;
     std::optional<std::size_t> chosen_;
-    std::vector<double> felt_N_;  // since the step began, at most twice ripple_s
+    std::vector<double> felt_N_;  // forces since the step began, at most twice ripple_s
     std::optional<double> ripple_N_;
 };
 

@@ -1,5 +1,4 @@
-// What happens in a live session, as its simulation and its servos are given it: the same events
-// and ticks, in the same order, give the same bits.
+// The events and ticks of a live session. Played again in the same order, they give the same bits.
 #pragma once
 #include "haptics/device.h"
 #include "haptics/servo.h"
@@ -14,35 +13,35 @@
 
 namespace palpa {
 
-// A device in a hand, as far as the simulation has to know it.
+// What the simulation has to know of the device of a hand.
 struct HandDevice {
     DeviceSpec spec;
-    bool stands_still = false;  // while the session is paused: an emulated one
+    bool stands_still = false;  // while the session is paused; true for an emulated device
 };
 
 // ---- of the simulation -------------------------------------------------------------------------
 
-// What the last step found goes to the servos.
+// Publishes the result of the last step to the servos.
 struct PublishEvent {};
 struct StepEvent {
-    std::optional<double> took_us{};  // wall time, where it is played again
-    bool adopts_renewal = false;      // begins with the pending renewal of second order
+    std::optional<double> took_us{};  // wall time of the step, set when a journal is played
+    bool adopts_renewal = false;      // the step begins with the pending second-order renewal
 };
-// Whatever hands do meanwhile moves nothing, and they feel nothing.
+// Holds the simulation: hands move nothing and feel nothing meanwhile.
 struct HoldEvent {};
-// All but ViewSettings, which are the window's business, and PlaybackOrder: what plays a trajectory
-// is not recorded. `settles`: hands are not to be felt yet.
-// `is_long`: an edit, which another thread makes while the world stands still.
+// A command of a person. ViewSettings belong to the window and PlaybackOrder is not recorded, so
+// neither occurs here. `settles`: hands feel nothing yet. `is_long`: an edit that another thread
+// makes while the world stands still.
 struct CommandEvent {
     Command command;
     bool settles = false;
     bool is_long = false;
 };
-// What a long edit made takes the world's place.
+// Replaces the world by the one that a long edit has built.
 struct AdoptEvent {
     bool settles = false;
 };
-// Another device in a hand; all servos begin anew.
+// Changes the device of a hand; all servos restart.
 struct DeviceEvent {
     std::size_t slot = 0;
     HandDevice device;
@@ -50,32 +49,33 @@ struct DeviceEvent {
 using LiveEvent =
     std::variant<PublishEvent, StepEvent, HoldEvent, CommandEvent, DeviceEvent, AdoptEvent>;
 
-// With the poses of all hands from which it began, by number; 0: none came yet.
+// An event with the number of the poses of all hands that it began from; 0: no pose had arrived.
 struct PlayedEvent {
     LiveEvent event;
     std::vector<std::uint64_t> poses;
-    // What an edit's files (list_files) held, as far as they could be read, for who keeps them.
+    // Contents of the edit's files (list_files), for a recording; nothing for a file that could not
+    // be read.
     std::vector<std::optional<std::string>> files{};
 };
 
 // ---- of the servos -----------------------------------------------------------------------------
 
-// What the servo of a hand is to do from now on.
+// The orders for the servo of a hand.
 struct ServoOrder {
     ServoSettings settings;
-    std::uint32_t restarts = 0;  // another number ends a latched stop
-    bool is_paused = false;      // on devices that stand still
-    std::uint64_t number = 0;    // of those that this hand's servo was sent
+    std::uint32_t restarts = 0;  // a change of this number ends a latched stop
+    bool is_paused = false;      // only on devices that stand still
+    std::uint64_t number = 0;    // counts the orders sent to this hand's servo
 };
 
-// One tick of one hand: what it did, and besides its reading (`tick.reading`) what it was given.
-// The contact model in force is that of `tick.contact.number`.
+// One tick of one hand: its result, and its inputs besides the reading (`tick.reading`).
+// `tick.contact.number` names the contact model in force.
 struct LiveTick {
     ServoTick tick;
     double now_s = 0;         // the servos' clock
-    std::uint64_t order = 0;  // in force
+    std::uint64_t order = 0;  // number of the order in force
     bool is_ending = false;   // the force fades
-    bool is_fresh = false;    // the first of a servo that begins anew
+    bool is_fresh = false;    // the first tick after a servo's restart
 };
 
 }  // namespace palpa

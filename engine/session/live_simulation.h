@@ -1,5 +1,5 @@
-// The simulation of a live session, one event after the other, without clock, thread or device. A
-// live session runs it beside its servos, and a journal runs it again.
+// The simulation of a live session as a sequence of events, without clock, thread or device. A live
+// session runs it beside its servos; a journal plays it again.
 #pragma once
 #include "core/stage.h"
 #include "ecs/world.h"
@@ -22,7 +22,7 @@
 
 namespace palpa {
 
-// Where its answers go: to the servo of each hand.
+// Receives what the simulation sends to the servo of each hand.
 class ServoLine {
 public:
     ServoLine() = default;
@@ -36,46 +36,48 @@ public:
 
 class LiveSimulation {
 public:
-    // Loads the scene and posts the first contact models and orders. `devices` are for the hands of
-    // the world, in their order; hands beyond these stand still. Throws LoadError, EngineLost where
-    // only a remote engine knows where atoms are and does not answer, and where a device must not
-    // be run with the scene's period (check_period). `playback`: a trajectory of the scene's atoms
-    // to play (simulation/playback.h); its scene is one by as_played. Throws LoadError as
-    // start_playback does. `on_stage` hears how far loading is.
+    // Loads the scene and posts the first contact models and orders. `devices` belong to the hands
+    // of the world, in the same order; hands without a device stand still. `playback`: a trajectory
+    // of the scene's atoms to play (simulation/playback.h); the scene then comes from as_played.
+    // `on_stage` hears how far loading is.
+    // Throws LoadError for a scene that cannot be used, for a device that must not run with the
+    // scene's period (check_period), and as start_playback does. Throws EngineLost if the positions
+    // come from a remote engine alone and it does not answer.
     LiveSimulation(const SceneDescription& scene, std::vector<HandDevice> devices, ServoLine& line,
                    const std::optional<PlaybackChoice>& playback = {},
                    const StageFunction& on_stage = {});
     LiveSimulation(const LiveSimulation&) = delete;
     LiveSimulation& operator=(const LiveSimulation&) = delete;
-    // Lets a remote engine go.
+    // Ends the connection to a remote engine.
     ~LiveSimulation();
 
-    // `poses`: the newest of all hands.
+    // Carries out one event. `poses`: the newest poses of all hands.
     void play(const LiveEvent& event, std::span<const HandPose> poses);
 
-    // Whether the edit takes so long in this world that a thread of its own is to make it: then it
-    // is an event that is long, build_draft() by any one thread, and an AdoptEvent. One at a time.
-    // Until then the world stands still; servos go on with the contact models they have.
+    // True if the edit takes so long in this world that another thread has to make it. Then it is
+    // played as a long event, built by build_draft() on any one thread, and taken over by an
+    // AdoptEvent; one at a time. The world stands still meanwhile; servos keep their contact
+    // models.
     bool takes_long(const EditDescription& edit) const noexcept;
     void build_draft() noexcept;
 
-    // A thread of its own makes the renewal of second order that a step has asked for; a StepEvent
-    // then adopts it. Edits and resets wait for that thread.
+    // Makes the second-order renewal that a step has asked for in another thread; a StepEvent
+    // adopts it. Edits and resets wait for that thread.
     void start_renewal();
-    bool has_renewal();  // one is made, and not yet adopted
+    bool has_renewal();  // a finished renewal waits to be adopted
 
     void order(const PlaybackOrder& order) { order_playback(world_, order); }
 
     const World& world() const noexcept { return world_; }
     const SceneDescription& scene() const noexcept { return scene_; }
     std::span<const HandDevice> devices() const noexcept { return devices_; }
-    // Every device stands still while the session is paused.
+    // True if every device stands still while the session is paused.
     bool all_stand_still() const noexcept;
-    // Of what happened to it; contact, error, work budget and times are left to others.
+    // What the simulation reports. Contact, error, work budget and times are filled in by others.
     const Readout& readout() const noexcept { return readout_; }
-    // What a person made of the world and did not undo; without the scene's own edits.
+    // The edits that a person made and did not undo, without the scene's own.
     std::vector<EditDescription> list_edits() const;
-    // Another number: molecules, or their names, are others than before.
+    // A number that changes when molecules or their names change.
     std::uint64_t edition() const noexcept { return edition_; }
 
 private:
@@ -103,12 +105,12 @@ private:
     World world_;
     RenewalWorker renewals_;  // of the world
     EditHistory history_;
-    // A long edit, on its way.
+    // A long edit that is being built.
     struct Draft {
         World before;
         EditDescription edit;
-        std::optional<World> changed;  // as soon as it is built
-        std::string refusal;           // or why it cannot be
+        std::optional<World> changed;  // set once it is built
+        std::string refusal;           // or the reason why it is refused
     };
     std::optional<Draft> draft_;
     EditPlayer edits_;
@@ -116,9 +118,9 @@ private:
     std::optional<ClientPull> pull_;  // that acts in every step
     double time_s_ = 0;               // of the steps so far
     std::vector<HandPose> poses_;
-    // By the hands now; what the last step answered is the simulation's.
+    // The contact models that the hands feel now; the last step's answer is in the simulation.
     std::vector<ContactModel> felt_;
-    std::vector<std::uint64_t> contacts_, orders_;  // posted so far
+    std::vector<std::uint64_t> contacts_, orders_;  // numbers of those posted last
     std::uint32_t restarts_ = 0, revision_ = 0;
     std::uint64_t edition_ = 0;
     Readout readout_;

@@ -1,4 +1,4 @@
-// A journal played again: the same ticks, to the bit.
+// Plays a journal again: the same ticks, to the bit.
 #pragma once
 #include "scene/description.h"
 #include "session/journal.h"
@@ -10,12 +10,12 @@
 
 namespace palpa {
 
-// Gets every tick of all hands that the recording holds.
+// Called for every recorded tick, with all hands.
 using LiveTicksFunction = std::function<void(std::span<const LiveTick>)>;
 
-// Plays the session from its first moment; `on_ticks` gets all hands' ticks from where the
-// recording begins. Throws LoadError where the scene cannot be loaded, or where the journal is not
-// one of it: it uses what was never posted, or begins from what was never read.
+// Plays the session from its first moment; `on_ticks` gets the ticks of all hands from the
+// beginning of the recording. Throws LoadError if the scene cannot be loaded, or if the journal
+// does not belong to it, that is, uses contact models, orders or poses that do not exist.
 void play_journal(const SceneDescription& scene, const Journal& journal,
                   const LiveTicksFunction& on_ticks, const ProgressFunction& progress = {});
 

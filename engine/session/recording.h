@@ -1,6 +1,6 @@
-// A session on disk: a folder with trace.csv, summary.json, session.toml and the scene's inputs;
-// one from a window has a journal.txt too (session/journal.h), and where asked there is a
-// trajectory (session/trajectory_recorder.h).
+// Writes a session to a folder: trace.csv, summary.json, session.toml and the scene's inputs; from
+// a window also journal.txt (session/journal.h); on request a trajectory
+// (session/trajectory_recorder.h).
 #pragma once
 #include "core/files.h"
 #include "haptics/servo.h"
@@ -19,76 +19,76 @@
 
 namespace palpa {
 
-// A hash of the scene, every field and the content of every file that it names. 16 hex digits.
+// A hash over every field of the scene and the content of every file that it names: 16 hex digits.
 std::string scene_hash(const SceneDescription& scene);
 
-// The trace's first line, without its end. One column a value, the unit last in the name. Further
-// hands have the columns of the first behind its own, but for time and period, with "_2", "_3", ...
-// at the end of the name.
-// Where molecules relax, its last columns are the error estimate and the age of the model.
+// The first line of the trace, without its line end. One column per value, named with its unit
+// last. Every further hand repeats the columns of the first except time and period, with "_2",
+// "_3", ... at the end of the name. If molecules relax, the last columns are the error estimate and
+// the age of the model.
 std::string trace_header(std::size_t hands = 1, bool relaxes = false);
 
-// One of its rows, with its end: every number in the shortest form that reads back to the same
-// bits. One tick of all hands.
+// One row for one tick of all hands, with its line end. Numbers have the shortest form that reads
+// back to the same bits.
 std::string trace_row(std::span<const ServoTick> ticks, bool relaxes = false);
 inline std::string trace_row(const ServoTick& tick) { return trace_row({&tick, 1}); }
 
-// The summary as a JSON object; scripts rely on its keys, which the README of tools lists.
+// The summary as a JSON object. Scripts rely on its keys, which tools/README.md lists.
 std::string format_summary(const SceneDescription& scene, const Summary& summary);
 
-// Throws LoadError where a Recording in the folder would, before anything long is done for it.
+// Throws LoadError if a Recording in this folder would, so that a long computation is not started
+// in vain.
 void check_record_folder(const std::filesystem::path& folder, bool overwrites);
 
-// What files are called in a recording.
+// Names of input files in a recording.
 class InputNames {
 public:
-    // Those of the scene, which have their names.
+    // Names the files of the scene.
     explicit InputNames(const SceneDescription& scene);
 
-    // "inputs/NAME" for one more.
+    // Adds one file; returns its name, "inputs/NAME".
     std::string add(const std::filesystem::path& file);
 
 private:
     std::set<std::string> taken_;
 };
 
-// What brings a recorded session back: the scene's own hand, or a journal.
-// A trajectory that moved the atoms, and the lines of a scripted run, are not in the recording, and
-// do not come back.
+// What drove a recorded session. A session driven by the scene's own hand or by a journal can be
+// played again. A trajectory that moved the atoms and the lines of a scripted run are not recorded,
+// so these cannot.
 enum class RecordedBy { Hand, Journal, Trajectory, Commands };
 
-// Whether the folder holds a recording by a trajectory, or of a scripted run.
+// True if the folder holds a recording driven by a trajectory, or by the lines of a scripted run.
 bool is_of_trajectory(const std::filesystem::path& folder);
 bool is_of_commands(const std::filesystem::path& folder);
 
 class Recording {
 public:
-    // Makes the folder and writes session.toml and the inputs: what is needed to run the session
-    // again is there from the first moment. Throws LoadError if the folder cannot be written, if
-    // another run records into it, or if it is not empty. A recording in it is replaced if
-    // `overwrites`: the files that belong to one, and nothing else.
+    // Makes the folder and writes session.toml and the inputs at once, so that even an interrupted
+    // session can be run again. If `overwrites`, the files of a recording in the folder are
+    // replaced and no others. Throws LoadError if the folder cannot be written, if another run
+    // records into it, or if it is not empty.
     Recording(const std::filesystem::path& folder, const SceneDescription& scene,
               bool overwrites = false, std::size_t hands = 1, RecordedBy by = RecordedBy::Hand);
 
-    // Every `every`th tick of all hands becomes a row. What was written stays readable if the run
-    // is cut off.
+    // Writes every `every`th tick of all hands as a row. Rows that are written stay readable if the
+    // run is interrupted.
     void add(std::span<const ServoTick> ticks);
     void add(const ServoTick& tick) { add({&tick, 1}); }
 
-    // Of a recording by journal: what follows in journal.txt.
+    // Appends to journal.txt, for a recording by journal.
     void add_journal(const std::string& text);
 
-    // One more input, that was read while the session ran. `name`: of InputNames. Throws LoadError
-    // where it cannot be written.
+    // Adds an input that was read while the session ran. `name`: from InputNames. Throws LoadError
+    // if it cannot be written.
     void add_input(const std::string& name, const std::string& content);
 
-    // A trajectory beside the trace, from its first frame on. What keeps it from being written is
-    // a note.
+    // Starts a trajectory beside the trace. If it cannot be written, a note says so.
     void begin_trajectory(const TrajectorySettings& settings);
     void add_frame(const TrajectoryShot& shot);
-    // What a user should know of it, a sentence each, since the last call.
+    // Notes for the user since the last call, one sentence each.
     std::vector<std::string> take_notes();
-    // Of the run's world, where one runs in the recorder's own thread (run_headless).
+    // Samples the run's world, for runs in the recorder's own thread (run_headless).
     void sample(const World& world, double time_s, std::uint64_t edition);
 
     // Writes the rest of the trace, and the summary.

@@ -1,4 +1,4 @@
-// A whole scene without a window: loaded, felt by a device in lockstep, summed up, recorded.
+// Runs a whole scene without a window: loads it, runs the device in lockstep, sums up and records.
 #pragma once
 #include "core/stage.h"
 #include "ecs/world.h"
@@ -22,93 +22,94 @@
 
 namespace palpa {
 
-// Share of the run that is done, 0 to 1; called about ten times a simulated second.
+// Gets the completed share of the run, 0 to 1, about ten times per simulated second.
 using ProgressFunction = std::function<void(double share)>;
 
-// Draws a frame of the simulation as it stands, `per_second` times a simulated second and at its
-// start.
+// Draws frames of the simulation: one at its start and `per_second` in each simulated second.
 struct FrameClock {
     double per_second = 0;
     std::function<void()> draw;
 };
 
-// Makes an edit at once, as those of the scene are made. Throws LoadError at its place, and leaves
-// all as it was.
+// Makes an edit at once, like the scene's own edits. Throws LoadError at the edit's place and then
+// changes nothing.
 using EditFunction = std::function<void(const EditDescription&)>;
 
-// Called before each step, after the edits that are due; may make more.
+// Called before each step and after the edits that are due; may make further edits.
 using BeforeStepFunction = std::function<void(World&, const EditFunction& edit)>;
 
-// Servo ticks of the scene's run.
+// Number of servo ticks of the scene's run.
 std::uint64_t count_ticks(const SceneDescription& scene) noexcept;
 
-// For an emulated device, whose safety chain is the whole one in guarded coupling alone.
-// `half_workspace_m`: of the device, for what carries a small one over a large scene.
+// Servo settings for an emulated device: the whole safety chain only with guarded coupling.
+// `half_workspace_m`: of the device, for coupling that moves a small workspace through a large
+// scene.
 ServoSettings build_servo_settings(const SceneDescription& scene, const World& world,
                                    const Vec3& half_workspace_m = Vec3::Constant(0.1));
 
-// For this device. The whole safety chain guards a real one in every mode, within its limits, and
-// it engages by quiet cycles and ramp.
+// Servo settings for this device. A real device always has the whole safety chain, with the
+// device's limits, and forces start after quiet cycles with a ramp.
 ServoSettings build_servo_settings(const SceneDescription& scene, const World& world,
                                    const DeviceSpec& device);
 
-// Gives the hands what edits have made of the coupling; their servos glide to it.
+// Applies changes of the coupling by edits to the hands; their servos blend into the new values.
 void renew_servos(const World& world, std::span<LockstepHand> hands);
 
-// Throws LoadError where this device must not be run with that period of the simulation: a real one
-// with motors, beyond `longest_real_period_s`.
+// Throws LoadError if the device must not run with this period of the simulation: a real device
+// with motors and a period above `longest_real_period_s`.
 void check_period(const DeviceSpec& device, double period_s);
 
-// A_d of the scene's coupling, the paper's or guarded, where the molecule feels this force (N) and
-// stiffness (N/m).
+// A_d of the scene's coupling (paper or guarded) for this force on the molecule (N) and stiffness
+// (N/m).
 double gain_where(const ServoSettings& servo, const World& world, const Vec3& force_newton,
                   const Mat3& stiffness) noexcept;
-// The same on a line.
+// The same in one dimension.
 double gain_where(const ServoSettings& servo, const World& world, const LineForce& line) noexcept;
 
-// Where along the line the hand feels the stiffest spring, K = A_f k_e / A_d, up to the scene's
-// peak force: in space the largest eigenvalue of sym(J k_e)/A_d, J the Jacobian of the force law on
-// the norm of the force.
+// The place along the line where the hand feels the stiffest spring, K = A_f k_e / A_d, at up to
+// the scene's peak force. In space k_e is replaced by the largest eigenvalue of sym(J k_e), with J
+// the Jacobian of the force law at that norm of the force.
 struct FeltStiffness {
     double newton_per_metre = 0;
     double angstrom = 0;
 };
-// `on_stage` hears how far the look has got, which takes minutes where a large molecule is rigid.
-// `slot`: of the hand, 0 the first.
+// `on_stage` hears how far the search is, which takes minutes for a large rigid molecule. `slot`:
+// index of the hand from 0.
 FeltStiffness stiffest_place(const SceneDescription& scene, const World& world,
                              const StageFunction& on_stage = {}, std::size_t slot = 0);
 
-// The stiffest spring (N/m) that this hand on the scene's device keeps calm at that period and the
-// scene's servo delay (haptics/plant.h); guarded, at the servo's own period and with its damping.
+// The stiffest spring (N/m) that is passive with this hand, the scene's device, this period and the
+// scene's servo delay (haptics/plant.h); with guarded coupling at the period and damping of the
+// servo.
 double calm_stiffness(const SceneDescription& scene, const std::optional<HandModel>& hand,
                       double period_s);
 
-// In words, what about the scene makes trouble: a spring stiffer than this hand, device, period and
-// servo delay keep calm (haptics/plant.h); guarded, a position sensor too coarse for stiffness and
-// damping, or gains that play rounding errors; atoms on each other, molecules that are not at rest,
-// a stroke longer than the run.
+// Warnings about the scene: a spring too stiff for this hand, device, period and servo delay
+// (haptics/plant.h); with guarded coupling a position sensor too coarse for stiffness and damping,
+// or gains that amplify rounding errors; overlapping atoms; molecules that are not at rest; a
+// stroke longer than the run.
 std::vector<std::string> list_warnings(const SceneDescription& scene, const World& world,
                                        const HandScript& script,
                                        const StageFunction& on_stage = {});
 
-// What of that is of a further hand alone, `slot` 1 and on.
+// The warnings that concern one further hand, `slot` ≥ 1.
 std::vector<std::string> list_hand_warnings(const SceneDescription& scene, const World& world,
                                             const HandScript& script, std::size_t slot,
                                             const StageFunction& on_stage = {});
 
-// Adds to the summary's warnings what went wrong in it.
+// Adds what went wrong during the run to the summary's warnings.
 void warn_of_outcome(Summary& summary);
 
-// `warnings` are put at the head of the summary's. `recording`, `progress` and `watch`, which sees
-// every tick, may be null or empty, and there need not be frames. It ends after the scene's
-// seconds, or where `is_over`, asked after every tick, says so; the simulation ends where the run
-// leaves it.
+// Runs the scene for its seconds, or until `is_over`, called after every tick, returns true.
+// `warnings` become the first warnings of the summary. `recording`, `progress` and `watch`, which
+// gets every tick, may be null or empty; frames are optional. The world is left as the run ends it.
 Summary run_headless(const SceneDescription& scene, World& world, Device& device,
                      const std::vector<std::string>& warnings, Recording* recording,
                      const ProgressFunction& progress, const FrameClock& frames = {},
                      const TickFunction& watch = {}, const EndFunction& is_over = {});
 
-// The same with devices for the hands of the world, in their order; hands beyond these stand still.
+// The same with devices for several hands of the world, in the same order; hands without a device
+// stand still.
 Summary run_headless(const SceneDescription& scene, World& world, std::span<Device* const> devices,
                      const std::vector<std::string>& warnings, Recording* recording,
                      const ProgressFunction& progress, const FrameClock& frames = {},

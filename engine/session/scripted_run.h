@@ -1,4 +1,5 @@
-// A run that lines of text drive (scene/run_commands.h), each answered by one line of JSON.
+// A run controlled by lines of text (scene/run_commands.h); each line is answered by one line of
+// JSON.
 #pragma once
 #include "core/load_error.h"
 #include "ecs/world.h"
@@ -18,37 +19,37 @@
 
 namespace palpa {
 
-// What a scripted run talks to.
+// The input and output of a scripted run.
 struct ScriptEnds {
-    // The next line without its end, of one that is too long enough to see that; nothing at the end
-    // of the input.
+    // The next line without its line end; nothing at the end of the input. A line that is too long
+    // is cut after enough characters to detect that.
     std::function<std::optional<std::string>()> next_line;
-    // Gets each answer, one line without its end.
+    // Gets each answer: one line without its line end.
     std::function<void(const std::string& answer)> answer;
-    // From now on the hand wants its handle there (m, from the centre of the workspace). Throws
-    // LoadError where this one cannot be led.
+    // Sets the target of the handle (m, from the centre of the workspace). Throws LoadError if this
+    // hand cannot be moved so.
     std::function<void(std::size_t hand, const Vec3& place_m)> lead;
 };
 
-// Answers are {"ok":true, ...} or {"ok":false,"error":"...","line":N}; a line that is refused
-// changes nothing. Simulated time passes in `step` and `run` alone, so the same lines give the same
-// answers. The run begins in the middle of its first tick: the servo has done it, the step that
-// begins with it waits for the first line.
+// Answers are {"ok":true, ...} or {"ok":false,"error":"...","line":N}; a refused line changes
+// nothing. Simulated time passes only in `step` and `run`, so the same lines give the same answers.
+// The run starts in the middle of its first tick: the servo has run, and the step that belongs to
+// it waits for the first line.
 class ScriptedRun {
 public:
-    // `scene` outlives it.
+    // `scene` must outlive this object.
     ScriptedRun(const SceneDescription& scene, ScriptEnds ends);
 
-    // Of run_headless: takes lines until one lets time pass, or the input ends.
+    // Called by run_headless: reads lines until one lets time pass, or the input ends.
     void before_step(World& world, const EditFunction& edit);
     void add(std::span<const ServoTick> ticks);
     bool is_over() const noexcept { return is_over_; }
 
-    // Whether a line was refused.
+    // True if a line was refused.
     bool has_refused() const noexcept { return has_refused_; }
 
 private:
-    // Whether the next step is to be made before more lines are taken.
+    // True if the next step has to be made before more lines are read.
     bool take_line(const std::string& line, World& world, const EditFunction& edit);
     bool obey(const RunCommand& command, World& world, const EditFunction& edit);
     void pass(std::uint64_t steps) noexcept;
@@ -59,9 +60,9 @@ private:
     const SceneDescription& scene_;
     ScriptEnds ends_;
     TextPlace place_{"commands"};
-    std::vector<ServoTick> ticks_;  // the last of all hands
-    std::uint64_t left_ = 0;        // steps that pass before the next line
-    bool is_passing_ = false;       // the answer is due when they have
+    std::vector<ServoTick> ticks_;  // last tick of every hand
+    std::uint64_t left_ = 0;        // steps to make before the next line
+    bool is_passing_ = false;       // the answer is given after these steps
     bool is_over_ = false, has_refused_ = false;
 };
 

@@ -1,4 +1,5 @@
-// The servos of all hands of a live session, tick by tick, without clock, thread or device.
+// The servos of all hands of a live session as a function of ticks, without clock, thread or
+// device.
 #pragma once
 #include "core/mailbox.h"
 #include "haptics/servo.h"
@@ -12,31 +13,32 @@ namespace palpa {
 
 class ServoBank {
 public:
-    // `most_hands` at most.
+    // `hands`: at most `most_hands`.
     explicit ServoBank(std::size_t hands);
 
-    // Where the simulation posts contact models and orders, and reads poses.
+    // Where the simulation of this hand posts contact models and orders and reads poses.
     Exchange& exchange(std::size_t slot) noexcept { return hands_[slot].exchange; }
     Mailbox<ServoOrder>& orders(std::size_t slot) noexcept { return inputs_[slot].orders; }
 
-    // The newest orders hold from now on. Before the first tick there must have been one for each.
+    // Applies the newest orders. Each hand needs one before the first tick.
     void take_orders() noexcept;
-    // All devices stand still, and so does the servo.
+    // True if all devices, and with them the servo, stand still.
     bool is_paused() const noexcept;
 
-    // One tick of all hands with what their devices read. Never throws, locks, waits or allocates.
+    // One tick of all hands from the readings of their devices. Never throws, locks, waits or
+    // allocates.
     void tick(std::span<const DeviceReading> readings, double now_s, bool is_ending) noexcept;
-    // What the last one did, by slot.
+    // Results of the last tick, by slot.
     std::span<const LiveTick> ticks() const noexcept { return ticks_; }
 
-    // Servos that know nothing of before. What molecules were given of the handles' travel and work
-    // stays theirs.
+    // Restarts all servos. Travel and work of the handles that molecules have received are not
+    // taken back.
     void begin_anew() noexcept;
 
 private:
     struct Input {
         Mailbox<ServoOrder> orders;
-        ServoOrder order;  // in force
+        ServoOrder order;  // the order in force
     };
 
     std::vector<ServoHand> hands_;

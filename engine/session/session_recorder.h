@@ -1,5 +1,5 @@
-// Keeps the journal of a live session from its first moment, so that a recording that somebody
-// begins later can be played again from there. Used by one thread at a time.
+// Holds the journal of a live session from its first moment, so that a recording begun later can be
+// played again from there. For one thread at a time.
 #pragma once
 #include "scene/description.h"
 #include "session/journal.h"
@@ -18,28 +18,28 @@ namespace palpa {
 
 class SessionRecorder {
 public:
-    // Bytes of a journal that are kept for a recording that may come: an hour or more.
+    // Largest journal, bytes, that is held in memory for a later recording: an hour or more.
     static constexpr std::size_t most_kept = std::size_t{256} << 20;
 
     SessionRecorder(const SceneDescription& scene, std::span<const HandDevice> devices);
 
     void add(const PlayedEvent& event);
-    void add(std::span<const LiveTick> ticks);  // of all hands
-    // Something of the session was lost: no recording of it can be played again.
+    void add(std::span<const LiveTick> ticks);  // one tick of all hands
+    // Marks that part of the session is missing: no recording of it can be played again.
     void lose() noexcept { is_whole_ = false; }
 
-    // The ticks from now on go into the folder's trace. Throws LoadError where a Recording would,
-    // or where the session's beginning is no longer known.
+    // Starts a recording: ticks from now on go to the folder's trace. Throws LoadError if a
+    // Recording would, or if the beginning of the session is no longer in memory.
     void begin(const std::filesystem::path& folder, bool overwrites,
                const std::optional<TrajectorySettings>& trajectory = {});
-    // A frame of its trajectory; nothing where nothing is recorded.
+    // Adds a frame of the trajectory; does nothing without a recording.
     void add(const TrajectoryShot& shot);
-    // What a user should know of it, a sentence each, since the last call.
+    // Notes for the user since the last call, one sentence each.
     std::vector<std::string> take_notes();
-    // As it is, without a summary.
+    // Stops recording without a summary.
     void give_up() noexcept { recording_.reset(); }
-    // Ends in order; nothing where nothing is recorded. Throws LoadError where it cannot be
-    // written.
+    // Ends the recording with its summary; does nothing without one. Throws LoadError if it cannot
+    // be written.
     void end();
 
     bool is_recording() const noexcept { return recording_.has_value(); }
@@ -63,8 +63,8 @@ private:
     std::string kept_;
     bool is_whole_ = true;
     std::optional<Recording> recording_;
-    std::vector<std::string> notes_;      // of recordings that are over
-    std::vector<Statistics> statistics_;  // of what is recorded, of each hand
+    std::vector<std::string> notes_;      // notes of ended recordings
+    std::vector<Statistics> statistics_;  // of the recording, for each hand
 };
 
 }  // namespace palpa

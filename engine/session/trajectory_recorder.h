@@ -1,5 +1,5 @@
-// The atoms of a run or session, frame after frame, in files beside its trace: trajectory.dcd, if
-// asked trajectory.xtc, and system.psf, which says what the atoms are.
+// Writes the atoms of a run or session to files beside its trace: trajectory.dcd, on request
+// trajectory.xtc, and system.psf, which describes the atoms.
 #pragma once
 #include "ecs/world.h"
 #include "formats/dcd.h"
@@ -23,24 +23,25 @@ struct TrajectorySettings {
 
     double per_second = 25;  // frames a simulated second; 0: none
     bool writes_xtc = false;
-    // The recording's trajectory ends before its files are larger; nothing: there is no limit.
+    // The trajectory ends before its files exceed this size; nothing: no limit.
     std::optional<std::uint64_t> most_bytes = usual_most_bytes;
 };
 
-// All atoms at one moment.
+// The positions of all atoms at one time.
 struct TrajectoryShot {
-    double time_s = 0;                           // simulated, from the beginning
-    std::vector<Vec3> positions;                 // Å, of the atom table
-    std::shared_ptr<const Connectivity> system;  // another one: an edit changed the atoms
+    double time_s = 0;            // simulated time from the beginning
+    std::vector<Vec3> positions;  // Å, in the order of the atom table
+    std::shared_ptr<const Connectivity>
+        system;  // a new pointer means that an edit changed the atoms
 };
 
-// When a frame is due, and what it shows. On the thread of the world.
+// Takes frames when they are due. Runs on the thread of the world.
 class TrajectorySampler {
 public:
     explicit TrajectorySampler(double per_second) : per_second_(per_second) {}
 
-    // Nothing where none is due at that time. `edition`: another number where the atoms may be
-    // others than before.
+    // Returns nothing if no frame is due at that time. `edition`: changes whenever the atoms may
+    // have changed.
     std::optional<TrajectoryShot> take(const World& world, double time_s, std::uint64_t edition);
 
 private:
@@ -49,19 +50,20 @@ private:
     std::shared_ptr<const Connectivity> system_;
 };
 
-// Between the thread of the world and that of the recorder.
+// Passes frames from the thread of the world to that of the recorder.
 class TrajectoryQueue {
 public:
     void begin(double per_second);
     void end();
 
-    // The world's thread, behind each step: `seconds` are simulated. Never waits for a disk; a
-    // frame that finds no room is lost, which take_lost() counts.
+    // For the world's thread, after each step: `seconds` are simulated. Never waits for a disk; if
+    // there is no room, the frame is lost and counted in take_lost().
     void pass(const World& world, double seconds, std::uint64_t edition);
 
-    // The recorder's thread: what came since the last call.
+    // For the recorder's thread: frames since the last call.
     std::vector<TrajectoryShot> take();
-    std::size_t take_lost();  // likewise, frames
+    std::size_t
+    take_lost();  // for the recorder's thread: number of lost frames since the last call
 
 private:
     static constexpr std::size_t most_waiting = 64;
@@ -73,17 +75,17 @@ private:
     std::size_t lost_ = 0;
 };
 
-// The files. What cannot be written ends the trajectory, with a note, and nothing else.
+// Writes the files. An error of writing ends the trajectory with a note; the run goes on.
 class TrajectoryFiles {
 public:
-    // Nothing is written before the first frame.
+    // Writes nothing before the first frame.
     TrajectoryFiles(std::filesystem::path folder, const TrajectorySettings& settings);
 
-    // A shot of other atoms begins trajectory-2.dcd and system-2.psf, and so on.
+    // A frame with other atoms begins trajectory-2.dcd and system-2.psf, and so on.
     void add(const TrajectoryShot& shot);
     void close();
 
-    // What a user should know, a sentence each, since the last call.
+    // Notes for the user since the last call, one sentence each.
     std::vector<std::string> take_notes();
 
 private:
@@ -101,8 +103,8 @@ private:
     std::vector<std::string> notes_;
 };
 
-// Those of a recording's folder, for who replaces it: by their names, and where the format has a
-// title by that.
+// The trajectory files of a recording's folder, found by name and, for formats with a title, by
+// title, so that a new recording can replace them.
 std::vector<std::filesystem::path> list_trajectory_files(const std::filesystem::path& folder);
 
 }  // namespace palpa

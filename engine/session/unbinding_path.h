@@ -1,4 +1,4 @@
-// How far what is in the hand went from where it started, and how it came back.
+// Measures how far the held molecule moved from its start, and how it returned.
 #pragma once
 #include "ecs/world.h"
 #include "math/vec.h"
@@ -9,17 +9,19 @@
 
 namespace palpa {
 
-// Å; heavy atoms are all but hydrogens.
+// Å. Heavy atoms are all atoms except hydrogens.
 struct UnbindingPath {
-    double farthest = 0;   // of the centre of mass from its start
-    double clearance = 0;  // then: between heavy atoms of it and of all other molecules
-    double closest = 0;    // the smallest such distance of the whole way
-    // rms at the end from the start, as in session/compare_poses.h: of its heavy atoms, the
-    // backbone of others, and side chains of the pocket.
+    double farthest = 0;  // largest distance of the centre of mass from its start
+    double clearance =
+        0;  // at that time: shortest distance of its heavy atoms to those of all other molecules
+    double closest = 0;  // the shortest such distance of the whole path
+    // RMSD between end and start, as in session/compare_poses.h: of its heavy atoms, of the
+    // backbone of the others, and of the side chains of the pocket.
     double last_rmsd = 0, last_backbone = 0, last_pocket = 0;
 };
 
-// Of a molecule that the hand moves in space, or of the residue or atom that its spring pulls at.
+// The path of a molecule that the hand moves in space, or of the residue or atom that its spring
+// pulls.
 class UnbindingLog {
 public:
     explicit UnbindingLog(const World& start);
@@ -30,7 +32,7 @@ public:
 private:
     std::vector<std::size_t> heavy_, other_heavy_;
     PoseComparison comparison_;
-    std::vector<Vec3> start_, last_;  // of all atoms
+    std::vector<Vec3> start_, last_;  // positions of all atoms
     Vec3 start_centre_ = Vec3::Zero();
     UnbindingPath unbinding_;
 };

@@ -1,5 +1,5 @@
-// How much work a quasi-static step does, so that the force stays within a tolerance of complete
-// relaxation: by error estimates that are made now and then (simulation/observe.h).
+// Controls the work of a quasi-static step so that the force stays within a tolerance of complete
+// relaxation, by error estimates made now and then (simulation/observe.h).
 #pragma once
 #include "statics/step_quasi_static.h"
 
@@ -10,45 +10,50 @@
 
 namespace palpa {
 
-// What a step may use.
+// The work that a step may do.
 struct WorkBudget {
-    std::size_t active = 0;  // degrees of freedom
-    std::size_t steps = 0;   // towards rest
+    std::size_t active = 0;  // active degrees of freedom
+    std::size_t steps = 0;   // relaxation steps
 
     friend bool operator==(const WorkBudget&, const WorkBudget&) = default;
 };
 
-// Work is counted in steps with everything active, so that it does not depend on the machine's
-// speed: a run whose steps have no time budget repeats to the bit.
+// Work is measured in steps with everything active, so that it does not depend on the speed of the
+// machine: a run without a time budget repeats to the bit.
 class AccuracyController {
 public:
-    static constexpr std::size_t estimate_steps = 100;  // of one error estimate, at most
-    static constexpr double estimate_share = 0.2;       // of all work, at most
-    static constexpr std::size_t most_steps = 20;       // of a step of the simulation
+    static constexpr std::size_t estimate_steps =
+        100;  // relaxation steps of one error estimate, at most
+    static constexpr double estimate_share =
+        0.2;  // share of all work that error estimates may take
+    static constexpr std::size_t most_steps =
+        20;  // relaxation steps in a step of the simulation, at most
 
-    // Begins with the scene's work budget, and never has fewer steps. With a time budget steps stay
-    // the scene's: time that more of them take would only be taken from joints.
+    // Starts with the scene's work budget; the number of steps never falls below it. With a time
+    // budget the number of steps stays constant, because more steps would leave less time for
+    // joints.
     AccuracyController(double tolerance_pN, const WorkBudget& scene, std::size_t coordinates,
                        bool has_budget) noexcept;
 
-    // A step was made with this work budget.
+    // Records a step that used this work budget.
     void add_step(const WorkBudget& used) noexcept;
-    // Whether it is time for the next error estimate, and the work of those before it is made up
-    // for.
+    // True if the next error estimate is due, that is, if its work is within the allowed share.
     bool is_due() const noexcept;
-    // What an error estimate of so many steps found where that force was rendered. Nine of ten of
-    // the last ten since the work budget changed tell: more than 0.7 of the tolerance, since
-    // between steps the servo's guess adds to it, and active joints are raised by half up to all,
-    // then steps, once more for each doubling of it; less than half of that, and first steps, then
-    // joints are lowered by a fifth, but only after a change of the force that could have been
-    // wrong. Where nothing is to be changed error estimates become rarer, until one finds too much.
+    // Adjusts the work budget to an error estimate, found after `steps` steps with this rendered
+    // force. The measure is the error that nine of the last ten estimates with this budget do not
+    // exceed. Above 0.7 of the tolerance (the servo's prediction between steps adds to the error)
+    // the number of active joints rises by half up to all, then the number of steps; once more for
+    // every doubling of the error. Below half of that, first steps and then joints fall by a fifth,
+    // but only after a change of force that could have caused an error. Without changes estimates
+    // become rarer until one is too large.
     void add_estimate(double error_pN, const Vec3& rendered_pN, std::size_t steps);
 
     void set_tolerance(double tolerance_pN) noexcept { tolerance_pN_ = tolerance_pN; }
     double tolerance() const noexcept { return tolerance_pN_; }
     const WorkBudget& work_budget() const noexcept { return work_budget_; }
     bool has_budget() const noexcept { return has_budget_; }
-    // pN, of nine of ten error estimates with this work budget, at most; nothing before the first.
+    // The error, pN, that nine of ten estimates with this work budget do not exceed; nothing before
+    // the first.
     std::optional<double> error() const;
 
 private:
@@ -61,25 +66,25 @@ private:
     std::size_t coordinates_, scene_steps_;
     bool has_budget_;
     WorkBudget work_budget_;
-    std::vector<double> errors_pN_;  // of the last error estimates with this work budget, a ring
-    std::size_t estimates_ = 0;      // with this work budget
+    std::vector<double>
+        errors_pN_;              // ring buffer of the last error estimates with this work budget
+    std::size_t estimates_ = 0;  // number of estimates with this work budget
     double last_error_pN_ = 0;
-    Vec3 rendered_pN_ = Vec3::Zero();  // at the first error estimate with this work budget
-    double largest_change_pN_ = 0;     // of the rendered force since
-    double saved_ = 0;                 // work that error estimates may take
-    double since_estimate_ = 0;        // of it, saved since the last
+    Vec3 rendered_pN_ = Vec3::Zero();  // rendered force at the first estimate with this work budget
+    double largest_change_pN_ = 0;     // largest change of the rendered force since then
+    double saved_ = 0;                 // work available for error estimates
+    double since_estimate_ = 0;        // part of it gained since the last estimate
     double estimate_work_ = 20;
     double rareness_ = 1;
 };
 
-// What a hand has hold of in a state: a molecule of the torsion model, or the spring of that
-// number.
+// What a hand holds in a state: a molecule of the torsion model, or a spring by its index.
 struct HeldInState {
     std::uint32_t base = 0;
-    std::int32_t spring = -1;  // none
+    std::int32_t spring = -1;  // -1: none
 };
 
-// What pulls at the molecule, or at the hand's end of its spring; the state has all forces.
+// The force on the molecule, or on the hand's end of its spring; the state must have all forces.
 Vec3 find_force_on_held(const TorsionModel& model, const TorsionState& state,
                         const HeldInState& held) noexcept;
 

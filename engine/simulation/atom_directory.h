@@ -1,5 +1,5 @@
-// What the atoms of a world are called, as edits name them: for those who see pictures of it and
-// not the world.
+// Names of the atoms of a world as edits use them, for code that sees pictures of the world but not
+// the world.
 #pragma once
 #include "charmm/force_field.h"
 #include "ecs/world.h"
@@ -20,29 +20,31 @@ struct AtomDirectory {
         std::uint32_t reference_atom;
     };
     std::vector<Entry> molecules;
-    std::vector<AtomName> names;                    // of the atoms of the table
-    std::vector<std::uint32_t> residue_of;          // of each atom, rising from 0: number_residues
-    std::shared_ptr<const ForceField> force_field;  // of what can be added; it never changes
+    std::vector<AtomName> names;  // in the order of the atom table
+    std::vector<std::uint32_t>
+        residue_of;  // residue index of each atom, ascending from 0: see number_residues
+    std::shared_ptr<const ForceField>
+        force_field;  // of the residues that can be added; never changes
 };
 
-// Null where there is none of that name.
+// Null if no molecule has that name.
 const AtomDirectory::Entry* find_molecule(const AtomDirectory& directory, std::string_view name);
 
-// Fills `residue_of` from molecules and names.
+// Computes `residue_of` from molecules and names.
 void number_residues(AtomDirectory& directory);
 
-// As long as nothing is added or removed.
+// Valid until atoms are added or removed.
 std::shared_ptr<const AtomDirectory> list_atoms(const World& world);
 
-// What of it an edit is about.
+// What an edit refers to.
 enum class AtomScope { Molecule, Residue, Atom };
 
-// Its molecule, residue or itself as scene/edits.h writes it: "protease_a:25 CA". Empty where there
-// is no such atom.
+// Address of the atom's molecule, of its residue or of the atom, as in scene/edits.h:
+// "protease_a:25 CA". Empty if there is no such atom.
 std::string address_of(const AtomDirectory& directory, std::uint32_t atom, AtomScope scope);
 
-// What the hand holds, as an edit takes it: a molecule, or at a spring an atom or a residue; empty:
-// nothing.
+// Address of what the hand holds, as in edits: a molecule, or with a spring an atom or a residue;
+// empty if it holds nothing.
 std::string held_address(const World& world, Entity hand, const AtomDirectory& directory);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// Forces that somebody outside puts on atoms, such as a client of IMD.
+// Forces on atoms from outside the program, for example from an IMD client.
 #pragma once
 #include "core/units.h"
 #include "math/vec.h"
@@ -9,15 +9,16 @@
 
 namespace palpa {
 
-// Of one atom, kcal/mol/Å: 10 nN, what no bond bears. And atoms that are pulled at one time.
+// Largest force on one atom, kcal/mol/Å: 10 nN, more than any bond bears. And the largest number of
+// atoms with a force.
 inline constexpr double strongest_client_pull = 1e4 / units::piconewton_per_kcal_per_mol_angstrom;
 inline constexpr std::size_t most_client_pulls = 1000;
 
-// A resource of the world; without it no client pulls.
+// A resource of the world; without it no client applies a force.
 struct ClientPull {
-    std::vector<std::uint32_t> atoms;  // of the table, each once
+    std::vector<std::uint32_t> atoms;  // indices into the atom table, each once
     std::vector<Vec3> forces;          // kcal/mol/Å, one per atom, within the bounds above
-    std::size_t of = 0;                // atoms of that table; of one with others nothing is pulled
+    std::size_t of = 0;  // number of atoms of the table; ignored if the table has another number
 
     friend bool operator==(const ClientPull&, const ClientPull&) = default;
 };

@@ -1,4 +1,4 @@
-// Every component an entity can have. Plain data; what acts on it are the systems of step.h.
+// All components of entities. Plain data; the systems of step.h act on them.
 #pragma once
 #include "ecs/entity.h"
 #include "haptics/exchange.h"
@@ -19,40 +19,40 @@ struct Connectivity;
 
 // ---- of a molecule ---------------------------------------------------------------------------
 
-// It owns a range of the atom table.
+// A molecule owns a range of the atom table.
 struct Molecule {
     std::string name;
     AtomRange atoms;
-    std::uint32_t reference_atom = 0;  // index into the table; stands for the molecule's place
+    std::uint32_t reference_atom =
+        0;  // index into the table; its position is the molecule's position
 };
 
-// Where it is. Written by what moves it: the hand, or relaxation.
+// Position and orientation. Written by what moves the molecule: a hand or relaxation.
 struct Pose {
-    Vec3 place = Vec3::Zero();            // Å, of the reference atom
-    Quat orientation = Quat::Identity();  // about that atom, from how it was loaded
+    Vec3 place = Vec3::Zero();            // Å, position of the reference atom
+    Quat orientation = Quat::Identity();  // rotation about that atom since loading
 };
 
-// Of a molecule that moves as one piece outside of the mechanics: its atoms from the reference atom
-// (Å), as they were loaded.
+// For a rigid molecule outside of the mechanics: its atoms relative to the reference atom (Å), as
+// loaded.
 struct RigidShape {
     std::vector<Vec3> atoms;
 };
 
-// Where its atoms and bonds are from. What is bonded is read or generated when something mobile
-// asks for it.
+// Origin of its atoms and bonds. Bonds are read or generated when something mobile needs them.
 struct Source {
     std::shared_ptr<const Structure> structure;
     std::shared_ptr<const Connectivity> connectivity;
     std::string segment;
 };
 
-// What it may do by itself or with the hand, and whether its joints may turn.
+// How the molecule may move, by itself or with the hand, and whether its joints may turn.
 struct Mobility {
     Motion motion = Motion::Fixed;
     Shape shape = Shape::Rigid;
 };
 
-// How it is drawn, where that is not as everything else.
+// How it is drawn, if different from everything else.
 struct Appearance {
     std::optional<Representation> representation;
     std::optional<Colouring> colouring;
@@ -61,50 +61,51 @@ struct Appearance {
 
 // ---- of a hand ---------------------------------------------------------------------------------
 
-// What the device said up to the last step. Hands stand in the order of their devices.
+// State of the device at the last step. Hands are in the order of their devices.
 struct Hand {
-    Vec3 travel_m = Vec3::Zero();  // the handle's
-    Quat turn = Quat::Identity();  // and its turn
-    bool turns = false;            // rigid molecules as it is turned
+    Vec3 travel_m = Vec3::Zero();  // travel of the handle
+    Quat turn = Quat::Identity();  // rotation of the handle
+    bool turns = false;            // the rotation of the handle turns rigid molecules
 };
 
-// What a hand holds, and how it moves it. Places are measured from `anchor`.
+// What a hand holds and how it moves it. Positions are relative to `anchor`.
 struct Grip {
     Entity molecule;
-    // Where a spring holds some of its atoms, these, counted from its first, and the spring's k
-    // (kcal/mol/Å^2).
+    // Atoms held by a spring, counted from the molecule's first, and the spring's k (kcal/mol/Å^2).
     std::vector<std::uint32_t> atoms;
     double k = 0;
-    Mobility before;  // of the molecule, which it has again when the hand lets go
+    Mobility before;  // mobility of the molecule before, restored when the hand releases it
     Entity measured_from;
-    Vec3 anchor = Vec3::Zero();  // Å, the reference atom of that molecule when the hand took hold
+    Vec3 anchor =
+        Vec3::Zero();  // Å, position of the molecule's reference atom when the hand took it
 
-    int freedom = 1;                              // 1: along x, 3: in space, 6: turned as well
-    Mat3 projector = Vec3::UnitX().asDiagonal();  // onto where the hand may move it
-    // Of the molecule's reference atom, or of the hand's end of the spring.
+    int freedom = 1;  // 1: along x, 3: in space, 6: in space with rotation
+    Mat3 projector = Vec3::UnitX().asDiagonal();  // onto the directions of possible motion
+    // Pose of the molecule's reference atom, or of the hand's end of the spring.
     MoleculePose pose;
-    // The line on which forces are probed: along x through this place, where the distance is 0. On
-    // a line that is the anchor; in space the place of rest, or beside it where the hand starts
-    // beside it.
+    // The line on which forces are probed: parallel to x through this point, which has distance 0.
+    // In one dimension the point is the anchor; in space it is the pose at rest, or the start of
+    // the hand beside it.
     Vec3 line_origin = Vec3::Zero();  // Å
 
-    // How the mechanics have it: which molecule of the torsion model it is, -1 for none, and the
-    // spring by which the hand pulls at it, -1 where the hand moves its base.
+    // Indices in the mechanics: the molecule of the torsion model, and the spring by which the hand
+    // pulls; -1: none.
     std::int32_t base = -1, spring = -1;
-    bool is_new = true;  // its pose is not yet known: that of what it holds
+    bool is_new = true;  // its pose is not set yet; it will be that of the held molecule
 };
 
-// Atoms around what is held, by number; rising, but with smooth ends in an order of neighbours.
+// Indices of atoms around the held molecule; ascending, but with smooth ends in the order of the
+// neighbour list.
 struct NearAtoms {
-    std::vector<std::uint32_t> atoms;  // empty: not chosen yet
-    Vec3 place = Vec3::Zero();         // of the molecule when they were chosen
-    std::size_t steps = 0;             // since
-    std::size_t most = 0;              // that were asked for
+    std::vector<std::uint32_t> atoms;  // empty: not selected yet
+    Vec3 place = Vec3::Zero();         // position of the molecule at the selection
+    std::size_t steps = 0;             // steps since the selection
+    std::size_t most = 0;              // requested number
 };
 
-// The local contact model of what a hand holds, for its servo.
+// The local contact model for the servo of a hand.
 struct Contact {
-    LocalContactModel answer;  // the last, to the hand
+    LocalContactModel answer;  // the last one sent to the hand
     NearAtoms near;
 };
 
@@ -116,15 +117,15 @@ struct AtomsOf {
     std::vector<std::uint32_t> atoms;
 };
 
-// A spring from the centre of mass of some atoms to that of others, or to a place.
+// A spring between the centres of mass of two groups of atoms, or from one to a fixed point.
 struct Restraint {
-    std::vector<AtomsOf> ends;  // one or two
-    Vec3 place = Vec3::Zero();  // Å, where there is one
+    std::vector<AtomsOf> ends;  // one or two groups
+    Vec3 place = Vec3::Zero();  // Å, the fixed point with one group
     double k = 0;               // kcal/mol/Å^2
     double length = 0;          // Å
 };
 
-// A label of one atom; between two a distance, of three an angle, of four a dihedral.
+// A measurement: a label for one atom, a distance for two, an angle for three, a dihedral for four.
 struct Mark {
     std::vector<AtomsOf> atoms;
     double value = 0;  // Å or degrees, after the last step

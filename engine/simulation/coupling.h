@@ -1,4 +1,4 @@
-// What a scene says of the coupling between hand and molecule, as laws.
+// Builds the coupling laws between hand and molecule from a scene.
 #pragma once
 #include "ecs/world.h"
 #include "haptics/gains.h"
@@ -6,13 +6,13 @@
 
 namespace palpa {
 
-// The laws that a scene's mode asks for.
+// The laws for the scene's mode.
 CouplingLaws build_coupling_laws(const CouplingDescription& coupling);
 
-// Whether there are such laws: eq. 2 cannot be calibrated to any numbers.
+// False if no such laws exist: eq. 2 cannot be calibrated to every combination of numbers.
 bool can_build_laws(const CouplingDescription& coupling);
 
-// Makes the scene's coupling that of a world, and all contact models anew.
+// Sets the coupling of a world and renews all contact models.
 void set_coupling(const CouplingDescription& coupling, World& world);
 
 }  // namespace palpa

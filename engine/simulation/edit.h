@@ -1,6 +1,6 @@
-// What changes a world between two steps. Every edit succeeds whole, or throws LoadError, which
-// says what is wrong and what would be right, and leaves all as it was. Where it changes what
-// moves, mechanics are then built anew from where everything is (rebuild_mechanics).
+// Edits change a world between two steps. An edit either succeeds completely, or throws LoadError
+// with the problem and a remedy and changes nothing. If the mobile parts change, the mechanics are
+// rebuilt at the present positions (rebuild_mechanics).
 #pragma once
 #include "ecs/world.h"
 #include "scene/edits.h"
@@ -13,9 +13,9 @@
 
 namespace palpa {
 
-// The edits of scene/edits.h, of a hand where they need one. Whatever a hand held before it lets
-// go. Held as a whole a molecule goes where the hand goes; at a spring it moves by itself, also one
-// that is fixed otherwise. A hand that lets go gives back what the molecule may do.
+// The edits of scene/edits.h, with a hand where they need one. The hand first releases what it
+// held. A molecule held as a whole follows the hand; at a spring it moves by itself, even if it is
+// otherwise fixed. On release it gets back its former mobility.
 void take(World& world, Entity hand, const TakeEdit& edit);
 void let_go(World& world, Entity hand);
 void add_molecule(World& world, const AddEdit& edit);
@@ -25,43 +25,43 @@ void add_restraint(World& world, const RestraintEdit& edit);
 void set_mobility(World& world, const MobilityEdit& edit);
 void set_appearance(World& world, const AppearanceEdit& edit);
 void set_coupling(World& world, const CouplingEdit& edit);
-// Loads the scene anew; the clock goes on, and hands take hold where their devices are.
+// Loads the scene again; the clock continues, and hands grip at the present poses of their devices.
 void reset(World& world);
 
-// The world as the edit makes it, whatever edit but undo and redo. Throws LoadError at the edit's
-// place. Touches nothing but its own copy, so a thread of its own may make it.
+// Returns the world after an edit of any kind except undo and redo. Throws LoadError at the edit's
+// place. Works on a copy, so it may run in another thread.
 World make_edit(const World& world, const EditDescription& edit);
 
-// Worlds to go back to: one for each edit, and one for each grip, from taking hold to letting go.
+// Earlier worlds for undo: one for each edit, and one for each grip from taking to release.
 class EditHistory {
 public:
     static constexpr std::size_t most_entries = 200;
-    static constexpr std::size_t most_bytes = std::size_t{256} << 20;  // of all of them, about
+    static constexpr std::size_t most_bytes = std::size_t{256} << 20;  // approximate total size
 
-    // An edit of any kind, undo and redo too. Throws LoadError at the edit's place.
+    // Carries out an edit of any kind, including undo and redo. Throws LoadError at the edit's
+    // place.
     void apply(World& world, const EditDescription& edit);
-    // Puts what make_edit made of an earlier state in the world's place; the clock goes on, and
-    // hands take hold where their devices are.
+    // Replaces the world by the result of make_edit on an earlier state; the clock continues, and
+    // hands grip at the present poses of their devices.
     void adopt(World& world, World changed, const EditDescription& edit);
 
-    // What was made of the world it began with and is not undone, in order; letting go stands
-    // behind its taking hold.
+    // The edits since the world's start that are not undone, in order; a release follows its grip.
     std::vector<EditDescription> list_edits() const;
 
     bool can_undo() const noexcept { return !undo_.empty(); }
     bool can_redo() const noexcept { return !redo_.empty(); }
-    // Whether the edit made last, undone or done again changed the coupling.
+    // True if the last edit, undo or redo changed the coupling.
     bool has_changed_coupling() const noexcept { return has_changed_coupling_; }
-    // Entries that were dropped, the oldest first, for there were too many.
+    // Number of oldest entries that were dropped to limit the size.
     std::size_t dropped() const noexcept { return dropped_; }
 
 private:
-    // What lies between a world and the one that follows it.
+    // The difference between a world and the next one.
     struct Change {
-        // The hand that took hold, as long as it has not let go.
+        // The hand that grips, until it releases.
         std::optional<std::size_t> grip;
         bool is_of_coupling = false;
-        std::vector<EditDescription> edits{};  // one, or taking hold and letting go
+        std::vector<EditDescription> edits{};  // one edit, or a grip with its release
     };
     struct Entry {
         World world;
@@ -80,7 +80,7 @@ private:
     bool has_changed_coupling_ = false;
 };
 
-// What a copy of the world takes, about; what copies share counts as nothing.
+// Approximate size of a copy of the world, bytes, without what copies share.
 std::size_t count_bytes(const World& world) noexcept;
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// What hands hold and what is around it: questions to a world, never an order of its atom table.
+// Queries about what hands hold and about its surroundings.
 #pragma once
 #include "ecs/world.h"
 #include "field/pair_field.h"
@@ -14,54 +14,54 @@ namespace palpa {
 
 // Hands in the order of their devices.
 std::vector<Entity> find_hands(const World& world);
-// The world must have one.
+// The world must have a hand.
 Entity first_hand(const World& world);
 
-// Of a hand that holds something.
+// The grip of a hand that holds something.
 const Grip& grip_of(const World& world, Entity hand) noexcept;
 const Contact& contact_of(const World& world, Entity hand) noexcept;
-// Of the first.
+// That of the first hand.
 const LocalContactModel& local_contact_of(const World& world) noexcept;
 LocalContactModel& local_contact_of(World& world) noexcept;
 
-// Whether it holds a part of the mechanics, and no molecule that moves as one piece outside of
-// them.
+// True if it holds a part of the mechanics, false for a rigid molecule outside of them.
 bool is_mobile(const Grip& grip) noexcept;
 
-// The molecule that a hand holds, whole or at a spring; without atoms where it holds nothing.
+// Atoms of the molecule that a hand holds, as a whole or at a spring; empty if it holds nothing.
 AtomRange held_range(const World& world, Entity hand) noexcept;
-// The spring by which it holds it, with the model's numbers of atoms; null: as a whole, or nothing.
+// The spring of the hand, with atom numbers of the model; null if it holds a molecule as a whole,
+// or nothing.
 const Spring* spring_of(const World& world, Entity hand) noexcept;
-// The atoms that it holds: those at its spring, or all of the molecule.
+// The held atoms: those at its spring, or all of the molecule.
 std::vector<std::uint32_t> held_atoms(const World& world, Entity hand);
 
-// Of a molecule, counted from its first: all.
+// All atoms of a molecule, counted from its first.
 std::vector<std::uint32_t> all_atoms_of(const World& world, Entity molecule);
 
-// The same atoms, as the table numbers them.
+// Indices of the same atoms in the table.
 std::vector<std::uint32_t> numbers_of(const World& world, const AtomsOf& atoms);
 
-// Their centre of mass.
+// The centre of mass of these atoms.
 Vec3 middle_of(const World& world, const AtomsOf& atoms);
 
-// Of a molecule, counted from its first: the atom "25 CA", all of residue "25" ("27A" with its
-// insertion code), or its 17th atom, "#17". Nothing where there is none.
+// The atoms with this name, counted from the molecule's first: the atom "25 CA", all of residue
+// "25" ("27A" with its insertion code), or its 17th atom, "#17". Empty if there is none.
 std::vector<std::uint32_t> atoms_called(const World& world, Entity molecule, std::string_view name);
 
-// Of a hand that holds something: where the reference atom of that is, or its end of the spring (Å,
-// in the world).
+// Position of the held molecule's reference atom, or of the hand's end of the spring (Å, world
+// frame). The hand must hold something.
 Vec3 held_place(const World& world, Entity hand) noexcept;
 
-// Puts what it holds there, turned as the pose says: what is mobile only where the handle turns it.
+// Moves what the hand holds to this pose; a mobile molecule is turned only if the handle turns it.
 void place_held(World& world, Entity hand, const MoleculePose& pose) noexcept;
 
-// By mass; of massless atoms the first's place.
+// The centre of mass; for atoms without mass the position of the first one.
 Vec3 centre_of_mass(const AtomTable& atoms, AtomRange range) noexcept;
 
-// The table's columns of these atoms, as the pair kernel wants them.
+// The columns of the table for these atoms, as the pair kernel needs them.
 FieldPoints points_of(const AtomTable& atoms, AtomRange range) noexcept;
 
-// The same of atoms that do not stand beside each other.
+// The same for atoms that are not adjacent in the table.
 struct GatheredPoints {
     std::vector<Vec3> positions;
     std::vector<double> charge, sqrt_epsilon, half_rmin;
@@ -72,57 +72,56 @@ struct GatheredPoints {
     FieldPoints view() const noexcept;
 };
 
-// The molecule in the hand, and the ranges of all other atoms.
+// The held molecule, and the ranges of all other atoms.
 FieldPoints held_points(const World& world, Entity hand) noexcept;
 std::vector<AtomRange> environment_of(const World& world, Entity hand);
 std::size_t count_environment(const World& world, Entity hand) noexcept;
 PairRule pair_rule(const World& world) noexcept;
 
-// What the environment does to the molecule in the hand, or to these points in its place; all pairs
-// in double.
+// Energy, force and derivatives of the environment's field on the held molecule, or on these points
+// in its place; all pairs in double precision.
 FieldSum field_on_held(const World& world, Entity hand);
 FieldSum field_on(const World& world, Entity hand, const FieldPoints& group);
 
-// From so many pairs on steps have them in single precision. Fewer take less than 0.1 ms in double
-// (7 ns each on one core of an AMD EPYC), a tenth of the shortest period, so nothing is gained.
+// From this number of pairs on, steps compute them in single precision. Fewer pairs take less than
+// 0.1 ms in double (7 ns each on one core of an AMD EPYC), a tenth of the shortest period.
 inline constexpr std::size_t fewest_fast_pairs = 10'000;
 
-// Whether steps have them so, of a molecule that a hand moves as one piece outside of the
-// mechanics: always in double where the scene has `statics.pairs = "double"`.
+// True if steps compute the pairs of this rigid molecule outside of the mechanics in single
+// precision. Always false with `statics.pairs = "double"` in the scene.
 bool has_fast_pairs(const World& world, Entity hand) noexcept;
 
-// What the environment does to it, as a step has it: by field/frozen_field.h or as above.
+// The same field as a step computes it: by field/frozen_field.h or in double as above.
 FieldSum fast_field_on_held(const World& world, Entity hand);
 
-// Whether anything but the hand moves molecules.
+// True if anything but hands moves molecules.
 bool has_mobile(const World& world) noexcept;
 const TorsionModel& model_of(const World& world) noexcept;
 const ModelAtoms& model_atoms_of(const World& world) noexcept;
 
-// Of all atoms of the table, where mobile ones are as the model has them at angles of 0.
+// Positions of all atoms of the table; mobile ones as in the model with all joint angles 0.
 std::vector<Vec3> reference_positions(const World& world);
 
-// Degrees of freedom that can move now.
+// Number of degrees of freedom that can move now.
 std::size_t find_active_freedom(const World& world) noexcept;
 
-// What pulls at the hand, kcal/mol/Å: that on the mobile molecule it moves, or its spring. Nothing
-// where it holds nothing, or what moves as one piece outside of the mechanics; the next one too.
+// Force on the mobile molecule that the hand moves, or on the hand's end of its spring, kcal/mol/Å.
+// Zero if it holds nothing or a rigid molecule outside of the mechanics; the same holds for the
+// next function.
 Vec3 find_force_on_held(const World& world, Entity hand) noexcept;
-// Force and torque about the origin on the molecule that the hand moves, from all others.
+// Force and torque about the origin on the molecule that the hand moves, from all other molecules.
 Vec6 find_pull_on_held(const World& world, Entity hand) noexcept;
 
-// Where everything mobile follows by second order and has a model; else null.
+// The second-order model if everything mobile follows the hands by one; else null.
 const SecondOrder* find_second_order(const World& world) noexcept;
 
-// Energy of what is mobile, kcal/mol, without terms that are constant, and without what clients
-// pull by.
+// Energy of the mobile parts, kcal/mol, without constant terms and without the springs of clients.
 double find_energy(const World& world) noexcept;
 
 // The last error estimate of the force on the first hand, pN.
 std::optional<double> find_error_estimate(const World& world) noexcept;
 
-// The places of atoms in the table, those that mechanics have changed since they were written the
-// last time.
+// Updates the positions in the table that the mechanics have changed since the last call.
 void copy_positions(World& world);
 
 }  // namespace palpa

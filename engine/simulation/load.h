@@ -1,4 +1,4 @@
-// A scene's files become a world.
+// Loads a scene's files into a world.
 #pragma once
 #include "charmm/topology.h"
 #include "core/stage.h"
@@ -11,21 +11,20 @@
 
 namespace palpa {
 
-// Reads everything the scene names, relaxes a grabbed molecule that moves in space as a rigid body,
-// until less than 20 pN pull at it, or everything mobile as the scene's [statics] say, and puts the
-// grabbed molecule at its start. `on_stage` hears what takes long. Throws LoadError with the place
-// of what is wrong.
+// Reads all files of the scene. Relaxes a rigid held molecule that moves in space until the force
+// on it is below 20 pN, or everything mobile as the scene's [statics] say. Moves the held molecule
+// to its start. `on_stage` hears of long stages. Throws LoadError with the place of the problem.
 World load_world(const SceneDescription& scene, const StageFunction& on_stage = {});
 
-// What a scene's molecules are, in the order of the atom table that load_world makes, and where its
-// files have them.
+// The molecules of a scene in the order of the atom table of load_world, with positions from the
+// files.
 struct SceneSystem {
     Connectivity connectivity;
     Topology topology;
     std::vector<Vec3> positions;  // Å
 };
 
-// Without anything moved, held or relaxed. Throws LoadError as load_world does.
+// Does not move, hold or relax anything. Throws LoadError as load_world does.
 SceneSystem load_system(const SceneDescription& scene);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// The mechanics of mobile molecules: which joints turn, which bases are free, what springs pull.
+// The mechanics of mobile molecules: joints that turn, bases that are free, springs.
 #pragma once
 #include "ecs/world.h"
 #include "scene/description.h"
@@ -13,58 +13,57 @@
 
 namespace palpa {
 
-// Whether anything is mobile: joints that may turn, a base that is free or turns, something on a
+// True if anything is mobile: joints that may turn, a base that is free or turns, something on a
 // spring.
 bool needs_mechanics(const World& world);
 
-// What all molecules are together. Reads or generates what was not asked for before. Throws
-// LoadError, also where molecules are bonded to each other or are the same atoms.
+// Bonded terms of all molecules. Reads or generates those not needed before. Throws LoadError, also
+// if molecules are bonded to each other or share atoms.
 const BondedTerms& bonded_terms(World& world);
 
-// Mechanics anew, or none, from what molecules may do and hands hold, where everything is: nothing
-// is remembered of those before. Throws LoadError naming joints of the scene that are not there,
-// and molecules that a hand cannot hold; then the world is of no use.
+// Rebuilds the mechanics, or removes them, from the mobility of the molecules and what hands hold,
+// at the present positions. Throws LoadError for joints of the scene that do not exist, and for
+// molecules that a hand cannot hold; the world is unusable then.
 void rebuild_mechanics(World& world);
 
-// Whether an atom has gone so far that it could soon feel others that a region's mechanics do not
-// have (simulation/region.h).
+// True if an atom has moved so far that it could soon interact with atoms outside of the region's
+// mechanics (simulation/region.h).
 bool has_left_region(const World& world) noexcept;
 
-// Mechanics anew of the region around where hands now hold something. Where that is too large the
-// old ones stay.
+// Rebuilds the mechanics for the region around what hands hold now. If that region is too large,
+// nothing changes.
 void renew_region(World& world) noexcept;
 
-// Called while molecules come to rest; where it returns false they stay as they are.
+// Called during relaxation; if it returns false, relaxation stops.
 using RelaxProgressFunction = std::function<bool(const RelaxProgress&)>;
 
-// The same for a world just loaded, with everything at rest, what hands hold too; StartReport says
-// how it got there.
+// Relaxes everything in a newly loaded world, including what hands hold, and builds the mechanics;
+// StartReport has the result.
 void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_relax = {});
 
-// What a hand has hold of: a molecule of the torsion model, whose base it moves, or the spring by
-// which it pulls.
+// What a hand holds: the molecule of the torsion model whose base it moves, or the spring by which
+// it pulls.
 struct HeldPart {
     std::uint32_t base = 0;
     std::optional<Spring> spring = {};
 };
 
-// A world of a model that is at rest where its reference is, as the scene's statics move it, and of
-// one hand, which moves a base or pulls at a spring from where that is; nothing else: for
-// measurements.
+// A world for measurements: a model at rest at its reference positions, moved as the scene's
+// statics say, and one hand that moves a base or pulls at a spring from there; nothing else.
 World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
                             const HeldPart& held);
 
 // What the first hand holds.
 HeldPart held_part(const World& world);
 
-// For measurements outside of a step. The first hand moves what it holds of them, wherever it is;
-// what is mobile settles as in one step.
+// For measurements outside of a step: the first hand moves what it holds, and mobile parts relax as
+// in one step.
 void move_held(World& world, const Vec3& by);
 RelaxStepReport relax_step(World& world);
-// Starts from another state, with nothing remembered.
+// Starts from another state without any history.
 void put_state(World& world, const TorsionState& state);
 
-// Takes what the state is now as the start: forces, and where a step that fails goes back to.
+// Makes the present state the start: its forces, and the state that a failed step returns to.
 void start_mechanics(World& world);
 
 }  // namespace palpa

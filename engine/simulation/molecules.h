@@ -1,4 +1,4 @@
-// Molecules of a world in its atom table.
+// Creates and removes molecules of a world in its atom table.
 #pragma once
 #include "charmm/force_field.h"
 #include "ecs/world.h"
@@ -8,25 +8,25 @@
 
 namespace palpa {
 
-// Nobody where there is none.
+// A null entity if no molecule has that name.
 Entity molecule_called(const World& world, std::string_view name) noexcept;
 
-// A molecule of atoms that are in the table, at rest where it is.
+// Creates a molecule from atoms of the table, at rest at their positions.
 Entity create_molecule(World& world, Molecule molecule, Mobility mobility, Source source);
 
-// Appends the atoms of a segment to the table: those of its topology, or as the force field's
-// residues have them. Throws LoadError as charmm/assign.h says.
+// Appends the atoms of a segment to the table, from its topology or else from the residues of the
+// force field. Throws LoadError as in charmm/assign.h.
 AtomRange add_segment_atoms(const ForceField& force_field, const Source& source, AtomTable& atoms);
 
-// What atoms of the table do to each other, from the scene's force field and solvent. Throws
+// Sets the interactions of the atoms of the table from the scene's force field and solvent. Throws
 // LoadError as set_solvation (simulation/solvent.h) does.
 void set_interactions(World& world);
 
-// A molecule moves as one piece from now on, from where it is.
+// Makes a molecule rigid from its present position on.
 void set_shape(World& world, Entity molecule);
 
-// Its atoms leave the table, and it the world; atoms behind it move up. Types are numbered as in a
-// table that never had it.
+// Removes a molecule and its atoms; later atoms move up in the table. Types are numbered as if the
+// table never had the molecule.
 void remove_atoms(World& world, Entity molecule);
 
 }  // namespace palpa

@@ -1,24 +1,24 @@
-// What watches steps without taking part: whether forces are exact enough, and how long steps take.
-// What they find decides how much work the next steps do.
+// Observes steps: the error of forces and the time of steps. The results decide how much work the
+// next steps do.
 #pragma once
 #include "ecs/world.h"
 #include "simulation/systems/step_input.h"
 
 namespace palpa {
 
-// Before a step, where forces are to be exact: what the servo said where the first hand is, in the
-// field of the step before.
+// Before a step, if an accuracy is set: records the force that the servo rendered at the first
+// hand's present pose, in the field of the previous step.
 void note_rendered_force(World& world, const StepInput& input);
 
-// After it: now and then, or where an accuracy is asked for as often as its share of the work
-// allows, the error of the force on the first hand: against a copy that relaxes completely, all
-// joints and all pairs, down to an rms force of 0.1 kcal/mol per rad and Å. Steps by second order
-// have their own estimate.
+// After a step: estimates the error of the force on the first hand, now and then, or, if an
+// accuracy is set, as often as its share of the work allows. Compares with a copy relaxed
+// completely, with all joints and pairs, to an rms force of 0.1 kcal/mol per rad and Å.
+// Second-order steps have their own estimate.
 void estimate_error(World& world);
-// One of these estimates, at once.
+// Makes one such estimate at once.
 void find_error(World& world);
 
-// The step's time, which a time budget goes by.
+// Records the time of the step, for a time budget.
 void note_time(World& world);
 
 }  // namespace palpa

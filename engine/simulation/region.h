@@ -1,5 +1,5 @@
-// Where only what is around the hands moves (joints.region_angstrom): which atoms may, and which
-// the mechanics have.
+// The region in which atoms move (joints.region_angstrom): the atoms that may move, and those that
+// the mechanics contain.
 #pragma once
 #include "ecs/world.h"
 #include "simulation/components.h"
@@ -10,26 +10,26 @@
 
 namespace palpa {
 
-// What hands held last: the region lies around it, also when they let go.
+// What hands held last; the region stays around it after they release it.
 struct RegionCentre {
     std::vector<AtomsOf> parts;
-    bool stays = false;  // another could not be had
+    bool stays = false;  // no other region could be built
 };
 
 struct Region {
-    // Of each atom of the table, whether it may move: in residues of flexible molecules with an
-    // atom in reach, and in molecules that are no more fixed than that, as wholes.
+    // For each atom of the table, whether it may move: residues of flexible molecules with an atom
+    // in reach, and molecules that are not fixed, as wholes.
     std::vector<std::uint8_t> is_inside;
-    // Of the mechanics, by the table's numbers, rising: these, the fixed ones from which they feel
-    // anything, and what restraints pull at. Without any where nothing may move.
+    // Atoms of the mechanics by table index, ascending: the atoms inside, the fixed ones that act
+    // on them, and those that restraints pull. Empty if nothing may move.
     std::vector<std::uint32_t> atoms;
 };
 
-// Fixed atoms are in it up to so far (Å) beyond the cutoff: mobile ones may go as far before they
-// would feel others.
+// Fixed atoms are included up to this distance (Å) beyond the cutoff: mobile atoms may move as far
+// before the mechanics are rebuilt.
 inline constexpr double region_margin = 6;
 
-// From where everything is now; none where the scene says nothing of a region.
+// The region at the present positions; nothing if the scene has none.
 std::optional<Region> find_region(World& world);
 
 }  // namespace palpa

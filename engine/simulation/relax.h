@@ -1,4 +1,4 @@
-// Brings a rigid group of points to rest in a fixed environment: six degrees of freedom.
+// Relaxes a rigid group of points in a fixed environment: six degrees of freedom.
 #pragma once
 #include "field/pair_field.h"
 #include "math/vec.h"
@@ -14,14 +14,14 @@ struct RelaxReport {
     double angle = 0;                            // rad, turned about the centre
     double force = 0;                            // kcal/mol/Å, norm of the residual
     double torque = 0;                           // kcal/mol, about the centre, of the residual
-    int evaluations = 0;                         // of the pair field
+    int evaluations = 0;                         // number of evaluations of the pair field
 };
 
-// Moves `positions`, the group's, as one body downhill until the norm of its force, and that of its
-// torque divided by its radius of gyration, are below `force_tolerance` (kcal/mol/Å), or nothing
-// gets better any more, as the report shows. Quasi-Newton steps (BFGS) on place and turn about
-// `centre`, none of which moves a point by more than 0.1 Å; every step lowers the energy. The same
-// input gives the same pose, always. Of `group` everything but the positions is used.
+// Moves `positions` of the group as one rigid body downhill until the norm of its force, and that
+// of its torque divided by its radius of gyration, are below `force_tolerance` (kcal/mol/Å), or
+// until the energy falls no further; see the report. BFGS steps in translation and rotation about
+// `centre`; no point moves more than 0.1 Å in a step, and every step lowers the energy.
+// Deterministic. Uses everything of `group` except its positions.
 RelaxReport relax_rigid(std::span<Vec3> positions, const Vec3& centre, FieldPoints group,
                         const FieldPoints& environment, const PairRule& rule,
                         double force_tolerance);

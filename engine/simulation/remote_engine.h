@@ -1,7 +1,7 @@
-// A remote engine that moves all atoms of a world, over IMD, in place of relaxation (a scene's
-// [engine]). Hands hold their atoms by springs: an end that the hand moves, and the middle of the
-// atoms through a low-pass, so that heat does not shake the hand. The force of the spring acts on
-// the engine's atoms, by their masses, and the opposite one on the hand.
+// A remote engine that moves all atoms of a world over IMD, in place of relaxation (a scene's
+// [engine]). Hands hold atoms by springs between the hand's end and the low-pass filtered centre of
+// the atoms, so that thermal motion does not shake the hand. The spring's force acts on the
+// engine's atoms in proportion to their masses, and the opposite force on the hand.
 #pragma once
 #include "ecs/world.h"
 #include "imd/client.h"
@@ -18,10 +18,11 @@
 
 namespace palpa {
 
-// Which of the engine's atoms are which of the table; -1 where there is none.
+// The mapping between atoms of the engine and of the table; -1: none.
 struct EngineAtoms {
-    std::vector<std::int32_t> in_table;   // of each atom that the engine sends
-    std::vector<std::int32_t> in_engine;  // of each atom of the table: others stay where they are
+    std::vector<std::int32_t> in_table;  // for each atom that the engine sends
+    std::vector<std::int32_t>
+        in_engine;  // for each atom of the table; atoms without an index do not move
 };
 
 // Resource of a world. Copies of a world share the connection.
@@ -29,61 +30,61 @@ struct RemoteEngine {
     EngineDescription settings;
     EngineAtoms atoms;
     std::shared_ptr<ImdClient> client;
-    std::string listed_in;    // the file that has its atoms, for messages
-    bool is_awaited = false;  // a step waits for a frame: no window
+    std::string listed_in;    // file that lists its atoms, for messages
+    bool is_awaited = false;  // steps wait for a frame (without a window)
 
-    std::uint64_t frames = 0;         // that came so far
-    double frame_interval_s = 0;      // between the last ones, wall time, smoothed; 0: not known
-    double frame_time_s = 0;          // of the last one, of the same clock
-    std::optional<double> lost_at_s;  // since when nothing comes
-    std::uint64_t interruptions = 0;  // how often frames ceased to come
-    std::string refusal;              // why the last forces were not sent; empty where they were
+    std::uint64_t frames = 0;         // frames received
+    double frame_interval_s = 0;      // smoothed wall time between frames; 0: unknown
+    double frame_time_s = 0;          // arrival of the last frame, same clock
+    std::optional<double> lost_at_s;  // time since which no frame has arrived
+    std::uint64_t interruptions = 0;  // number of times that frames stopped
+    std::string refusal;              // why the last forces were not sent; empty if they were
 };
 
 // Component of a hand that holds atoms of the engine.
 struct EngineHold {
-    std::vector<std::uint32_t> atoms;  // of the table
-    std::vector<double> shares;        // of their mass, in the same order
-    Vec3 middle = Vec3::Zero();        // Å, in the last frame
-    Vec3 smoothed = Vec3::Zero();      // Å, through the low-pass
-    bool is_live = false;              // frames come, and the spring acts
+    std::vector<std::uint32_t> atoms;  // indices into the table
+    std::vector<double> shares;        // mass fractions, in the same order
+    Vec3 middle = Vec3::Zero();        // Å, centre of mass in the last frame
+    Vec3 smoothed = Vec3::Zero();      // Å, centre of mass after the low-pass filter
+    bool is_live = false;              // frames arrive and the spring acts
 };
 
 // Force on the hand's end of a spring, kcal/mol/Å, and its stiffness -dF/dx, kcal/mol/Å^2.
-// `stretch` (Å): from that end to the atoms. Beyond `most` (kcal/mol/Å) the force keeps its size.
+// `stretch` (Å): from that end to the atoms. The force is limited to `most` (kcal/mol/Å).
 struct EngineSpring {
     Vec3 force = Vec3::Zero();
     Mat3 stiffness = Mat3::Zero();
 };
 EngineSpring find_engine_spring(double k, const Vec3& stretch, double most) noexcept;
-// Of a hand that holds atoms of the engine; nothing where its hold is not live.
+// For a hand that holds atoms of the engine; zero while its spring does not act.
 EngineSpring find_engine_spring(const World& world, Entity hand) noexcept;
 
-// The middle of what it holds, Å, where the table has it.
+// Centre of mass of the held atoms in the table, Å.
 Vec3 find_middle(const AtomTable& table, const EngineHold& hold) noexcept;
 
-// Of the scene's molecule: atoms of its segment with names, masses, charges and bonds, and no
-// parameters. Without a topology masses are those of elements, and bonds are found from distances.
-// A structure that is a PSF file leaves all atoms at the origin. Throws LoadError as the readers
-// do.
+// Adds the atoms of a molecule of the scene with names, masses, charges and bonds, without
+// parameters. Without a topology, masses are those of the elements and bonds follow from distances.
+// If the structure is a PSF file, all atoms are at the origin. Throws LoadError as the readers do.
 AtomRange add_engine_atoms(const Source& source, AtomTable& table);
 
-// By `engine.atoms`. Throws LoadError: atoms of the scene that are not there, or not once, or of
-// another mass; an index file that names other atoms than the scene has.
+// The mapping according to `engine.atoms`. Throws LoadError for atoms of the scene that are
+// missing, occur twice or have another mass, and for an index file that names other atoms than the
+// scene has.
 EngineAtoms find_engine_atoms(const SceneDescription& scene, const AtomTable& table);
 
-// Gives a world that has its molecules the resource; nothing is connected to yet.
+// Adds the resource to a world with molecules; does not connect yet.
 void set_remote_engine(const SceneDescription& scene, World& world);
 
-// Springs and holds of all hands anew, from what they hold.
+// Rebuilds the springs of all hands from what they hold.
 void hold_engine_atoms(World& world);
 
-// Takes the newest frame, waiting for one where steps wait: false where none came. Connects at
-// first.
+// Reads the newest frame, connecting first if needed. Waits for one if steps wait; false if none
+// has arrived.
 bool take_newest_frame(World& world);
 
-// Whether the engine alone knows where atoms are, of a molecule whose structure is a PSF file:
-// until its first frame they are at the origin.
+// True if the positions come from the engine alone, because a molecule's structure is a PSF file;
+// until the first frame they are at the origin.
 bool lacks_coordinates(const SceneDescription& scene);
 
 // Waits for the first frame. Throws EngineLost.
@@ -94,21 +95,21 @@ public:
     using LoadError::LoadError;
 };
 
-// Lets go and leaves in order, which takes a second at most.
+// Releases the atoms and disconnects; takes at most a second.
 void leave_engine(World& world);
 
-// Asks the engine to stand still meanwhile; nothing where there is none.
+// Asks the engine to pause or to continue; does nothing without one.
 void pause_engine(World& world, bool is_paused);
 
 // Null where the world has none.
 const RemoteEngine* find_remote_engine(const World& world) noexcept;
-// What would be right, of an engine that does not send: "expected ..."
+// The advice for an engine that does not send: "expected ..."
 std::string advise(const RemoteEngine& engine);
-// Whether a run without a window is to end: nothing has come for long.
+// True if a run without a window should end because no frame has arrived for long.
 bool is_engine_gone(const World& world) noexcept;
-// From the atoms' motion to the force on the hand, s: step, frame and low-pass.
+// Delay from the atoms' motion to the force on the hand, s: step, frame and low-pass filter.
 double find_engine_delay(const World& world) noexcept;
-// One sentence.
+// The state of the engine in one sentence.
 std::string describe_engine(const World& world);
 
 }  // namespace palpa

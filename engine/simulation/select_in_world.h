@@ -1,4 +1,4 @@
-// Expressions (molecule/select.h) about the atoms of a world.
+// Selects atoms of a world by expressions (molecule/select.h).
 #pragma once
 #include "ecs/world.h"
 #include "molecule/select.h"
@@ -10,13 +10,13 @@
 
 namespace palpa {
 
-// Which atoms of the table are selected as they are now; `structure`, where somebody has found it,
-// one entry per atom. Throws LoadError as select_atoms does.
+// For each atom of the table, whether it is selected at its present position. `structure`: the
+// secondary structure if already known, one entry per atom. Throws LoadError as select_atoms does.
 std::vector<bool> select_in_world(const World& world, const Selection& selection,
                                   std::span<const SecondaryStructure> structure = {});
 
-// The selections of [view] that select nothing. Throws LoadError, with the key and the column, for
-// one that is none, or names a molecule that is not there.
+// The selections of [view] that select nothing. Throws LoadError with key and column for a
+// malformed one, or one that names a missing molecule.
 std::vector<std::string> find_empty_selections(const ViewDescription& view, const World& world);
 
 }  // namespace palpa

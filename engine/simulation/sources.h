@@ -1,4 +1,4 @@
-// Where the atoms of a molecule are from: files, a residue of the force field, another molecule.
+// Origins of the atoms of a molecule: files, a residue of the force field, another molecule.
 #pragma once
 #include "charmm/force_field.h"
 #include "ecs/world.h"
@@ -13,39 +13,39 @@
 
 namespace palpa {
 
-// Files by path: several molecules may be of one.
+// Files by path; several molecules may share one.
 struct SourceFiles {
     std::map<std::filesystem::path, std::shared_ptr<const Structure>> structures;
     std::map<std::filesystem::path, std::shared_ptr<const Connectivity>> connectivities;
 };
 
-// What a molecule of a scene names. No topology: an empty path. Throws LoadError as the readers do,
-// and where a structure has alternate locations.
+// The source of a molecule of a scene. An empty path: no topology. Throws LoadError as the readers
+// do, and for alternate locations.
 Source find_source(const std::filesystem::path& structure, const std::filesystem::path& topology,
                    const std::string& segment, SourceFiles& files);
 
-// The same of a remote engine's molecule, whose structure may be a PSF file: then all is at the
-// origin.
+// The same for a molecule of a remote engine, whose structure may be a PSF file: all atoms are at
+// the origin then.
 Source find_engine_source(const std::filesystem::path& structure,
                           const std::filesystem::path& topology, const std::string& segment,
                           SourceFiles& files);
 
-// By its name.
+// Judged by the file name.
 bool is_psf(const std::filesystem::path& path);
 
-// The rest make a segment `name` that holds this molecule alone.
+// The following functions make a segment `name` that contains this molecule alone.
 
-// One of the segments that the files have; no segment: the only one. Throws LoadError as
-// find_source does, and, with the segments that are there, where it is not one of them.
+// One segment of the files; an empty name: the only one. Throws LoadError as find_source does, and,
+// listing the segments of the file, if it has no such segment.
 Source read_segment(const std::filesystem::path& structure, const std::filesystem::path& topology,
                     const std::string& segment, const std::string& name);
 
-// Built from lengths, angles and the residue's table, the first atom at the origin. Throws
-// LoadError that names what the force field lacks.
+// Builds a residue from bond lengths, angles and the residue's internal coordinates, with the first
+// atom at the origin. Throws LoadError that names what the force field lacks.
 Source build_residue(const ForceField& force_field, const std::string& residue,
                      const std::string& name);
 
-// As the molecule stands now.
+// A copy of a molecule at its present position.
 Source copy_source(const World& world, Entity molecule, const std::string& name);
 
 }  // namespace palpa

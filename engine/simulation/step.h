@@ -1,4 +1,4 @@
-// One step of the simulation: hand poses in, contact models out.
+// One step of the simulation: from hand poses to contact models.
 #pragma once
 #include "ecs/world.h"
 #include "simulation/resources.h"
@@ -6,12 +6,12 @@
 
 namespace palpa {
 
-// Every system in its order (step.cpp has the list), for a world as load_world makes it; its
-// StepReport. A step that ends in something not finite leaves what moves as it was; where a contact
-// force is no number, its contact model says so, and the servo stops.
+// Runs all systems in the order listed in step.cpp on a world from load_world and returns its
+// StepReport. A step with a result that is not finite moves nothing; a contact model with such a
+// force says so, and the servo stops.
 const StepReport& step_world(World& world, const StepInput& input) noexcept;
 
-// Of the first hand; others stand still.
+// With a pose for the first hand; other hands stand still.
 const StepReport& step_world(World& world, const HandPose& hand, const ContactModel& felt) noexcept;
 
 }  // namespace palpa

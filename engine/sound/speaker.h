@@ -1,4 +1,4 @@
-// The system's sound output, which plays the newest tone.
+// The system's sound output; plays the newest tone.
 #pragma once
 #include "core/mailbox.h"
 #include "sound/tone.h"
@@ -10,40 +10,40 @@
 
 namespace palpa {
 
-// No sound output, or one that cannot be opened: a sentence for the user.
+// Thrown if there is no sound output or it cannot be opened; a sentence for the user.
 class SoundError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
 
-// One at a time, used by one thread. Samples are made on a thread of the sound library, which is
-// handed the newest tone without locks or allocation.
+// At most one at a time, used by one thread. The sound library's thread makes the samples and gets
+// the newest tone without locks or allocation.
 class Speaker {
 public:
-    // Silent until the first tone. Throws SoundError. Of the sound library only sound is set up,
-    // and no signal is taken.
+    // Silent until the first tone. Throws SoundError. Initialises only the sound part of the
+    // library, without its signal handlers.
     Speaker();
     Speaker(const Speaker&) = delete;
     Speaker& operator=(const Speaker&) = delete;
-    // The tone fades first, a tenth of a second.
+    // Fades the tone over a tenth of a second.
     ~Speaker();
 
-    // From now on, until the next one. One that is not renewed for a second, since nobody says the
-    // force any more, fades.
+    // Plays this tone until the next. A tone that is not renewed within a second fades, because the
+    // force is then unknown.
     void play(const Tone& tone) noexcept { tones_.post(tone); }
 
-    // False once the output has gone away; it does not come back.
+    // False once the output is lost; it does not return.
     bool is_there() const noexcept;
 
 private:
     static void fill(void* speaker, std::uint8_t* bytes, int size) noexcept;
 
-    std::uint32_t output_ = 0;  // the library's number of it
+    std::uint32_t output_ = 0;  // the library's identifier of the output
     Mailbox<Tone> tones_;
     std::atomic<bool> is_silent_{true};
-    // Of the library's thread.
+    // Used by the library's thread.
     ToneState state_;
-    std::size_t samples_since_ = 0;  // the newest tone came
+    std::size_t samples_since_ = 0;  // samples since the newest tone arrived
 };
 
 }  // namespace palpa

@@ -1,45 +1,46 @@
-// A felt force as a tone, for a person whose device does not play it: how high, how loud, its wave.
+// Converts a felt force to a tone (pitch, loudness and samples), for people whose device does not
+// render it.
 #pragma once
 #include <span>
 
 namespace palpa {
 
-// The ripple that guarded coupling may leave on a hand at rest stays below the first force, so that
-// nothing is heard where nothing pushes. The second is the usual cap (`coupling.clamp_N`); what is
-// above it sounds the same.
+// The range of forces that can be heard. The lower one lies above the ripple of guarded coupling on
+// a hand at rest, so that nothing is heard without contact. The upper one is the usual force cap
+// (`coupling.clamp_N`); larger forces sound the same.
 inline constexpr double faintest_heard_newton = 0.02, strongest_heard_newton = 3;
 
-// From A3 to A5, two octaves: not shrill, and not too low for small loudspeakers.
+// From A3 to A5, two octaves: neither shrill nor too low for small loudspeakers.
 inline constexpr double lowest_hertz = 220, highest_hertz = 880;
 
-// Of full scale, 1: as loud as it ever is, so that a person who has the volume up is not startled.
+// Largest amplitude relative to full scale, low enough not to startle at a high volume setting.
 inline constexpr double loudest_amplitude = 0.25;
 
-inline constexpr int sound_rate_hz = 48'000;  // samples
+inline constexpr int sound_rate_hz = 48'000;  // samples per second
 
 struct Tone {
     double hertz = lowest_hertz;
     double amplitude = 0;  // 0 to 1; 0 is silence
 };
 
-// Of the norm of the force. Steps in pitch are to the ear what steps of the force are to the hand:
-// log f rises in proportion to the force, 8 semitones a newton. The wave's power (amplitude
-// squared) rises in proportion to the force above the faintest, and so its loudness with the power
-// 0.3 of that (S. S. Stevens, Psychol. Rev. 64, 1957): a gentle rise. Below the faintest, and where
-// the force is no finite number, silence.
+// The tone for a norm of the force. log f is proportional to the force, 8 semitones per newton, so
+// that equal steps of force sound like equal steps of pitch. The power of the wave (amplitude
+// squared) is proportional to the force above the lower limit, and loudness to its 0.3rd power (S.
+// S. Stevens, Psychol. Rev. 64, 1957). Silence below the lower limit and for a force that is not
+// finite.
 Tone tone_of(double force_newton) noexcept;
 
-// The wave at this moment.
+// State of the oscillator.
 struct ToneState {
-    double turns = 0;  // of the oscillator, 0 to 1
+    double turns = 0;  // phase of the oscillator, turns, 0 to 1
     double hertz = lowest_hertz;
     double amplitude = 0;
 };
 
-// The next samples, from -1 to 1, at `sound_rate_hz`. Pitch and loudness glide to what is wanted
-// with a time constant of 10 ms, which hides the steps of a picture's 16 ms and makes no click. A
-// tone that fades keeps its pitch and ends in zeros; one that begins has its own from the start.
-// How many samples are asked for at once changes nothing.
+// Writes the next samples, -1 to 1, at `sound_rate_hz`. Pitch and loudness approach the wanted tone
+// with a time constant of 10 ms, which hides the 16 ms steps of pictures and avoids clicks. A
+// fading tone keeps its pitch and ends in zeros; a new one starts at its own pitch. The result does
+// not depend on the number of samples per call.
 void render_tone(const Tone& wanted, ToneState& state, std::span<float> samples) noexcept;
 
 }  // namespace palpa

@@ -1,23 +1,23 @@
-// Second derivatives of the energy along joints, bases and what hands move, as fast as the
-// processor at hand can: pairs in single precision, sums of them in double.
+// Second derivatives of the energy with respect to joints, bases and hand coordinates, with the
+// fastest instructions of the processor: pairs in single precision, sums in double.
 #pragma once
 #include "field/body_hessian.h"
 #include "statics/second_derivatives.h"
 
 namespace palpa {
 
-// Of a model and its coordinates; constant.
+// Constant data of a model and its coordinates.
 struct FastSecondDerivatives {
     ModelPaths paths;
     HessianPlan plan;
     LocalCoordinates ordered;             // in the plan's numbering
-    std::vector<Eigen::Index> column_of;  // of each of these in the caller's numbering
+    std::vector<Eigen::Index> column_of;  // column of each coordinate in the caller's numbering
 };
 
 FastSecondDerivatives build_fast_second_derivatives(const TorsionModel& model,
                                                     const LocalCoordinates& coordinates);
 
-// What one call uses again at the next.
+// Memory reused between calls.
 struct SecondDerivativesMemory {
     HessianSums sums;
     std::vector<CoordinateMotion> motions;

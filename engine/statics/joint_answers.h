@@ -1,4 +1,4 @@
-// How single joints answer in steps by second order: beyond first order, and how far from right.
+// Response of single joints in second-order steps: nonlinear part and estimated error.
 #pragma once
 #include "statics/second_order_step.h"
 
@@ -24,12 +24,12 @@ std::vector<double> estimate_joint_errors(const TorsionModel& model,
                                           const TorsionState& state,
                                           const SecondOrderStatics& statics);
 
-// Returns one angle per body, rad: how far the model would turn its joint before the model is at
-// rest, -H^-1 g. `gradient`: of the model, along its own coordinates.
+// Returns one angle per body, rad: how far the model would still turn its joint until the model is
+// at rest, -H^-1 g. `gradient`: of the model, along its own coordinates.
 std::vector<double> find_unrelaxed_turns(const TorsionModel& model, const LinearisedModel& linear,
                                          const Eigen::VectorXd& gradient);
 
-// Keeps what the functions above need of the model that this renewal replaces. Call it before the
+// Stores what the functions above need of the model that this renewal replaces. Call it before the
 // renewal is used.
 void note_joint_answers(const TorsionModel& model, const SecondOrderSettings& settings,
                         const Renewal& renewal, SecondOrderStatics& statics);

@@ -17,22 +17,22 @@
 
 namespace palpa {
 
-// What hands hold of a model.
+// The atoms and coordinates that hands hold.
 struct HeldParts {
     std::vector<HandHold> hands;
-    std::vector<std::uint32_t> atoms;  // of all hands, rising
+    std::vector<std::uint32_t> atoms;  // of all hands, ascending
 };
 
-// Few combinations of the mobile coordinates in which a model answers, instead of all
-// (statics/response_span.h). By the second derivatives that are factored each has the curvature 1
-// kcal/mol, and none of two.
+// A few combinations of the mobile coordinates in which a model responds, instead of all
+// (statics/response_span.h). With respect to the factored second derivatives each has the curvature
+// 1 kcal/mol, and mixed derivatives are zero.
 struct ResponseSpan {
-    Eigen::MatrixXd basis;     // one column each
-    Eigen::MatrixXd response;  // X in them: basis * response is LinearisedModel::response
+    Eigen::MatrixXd basis;     // one column per combination
+    Eigen::MatrixXd response;  // X in the span: basis * response is LinearisedModel::response
 
-    // Of a gradient along all coordinates, hands last.
+    // Projects a gradient along all coordinates, hands last, on the span.
     Eigen::VectorXd reduce(const Eigen::VectorXd& gradient) const;
-    // All coordinates from those of the span, hands last.
+    // Returns all coordinates for those of the span, hands last.
     Eigen::VectorXd expand(const Eigen::VectorXd& at) const;
 };
 
@@ -46,9 +46,10 @@ struct LinearisedModel {
     LocalCoordinates coordinates;
     Eigen::VectorXd gradient;  // of the whole energy there; hands last: minus the forces on them
     NearPairs near;
-    ClosePairs close;  // of those that Q has
+    ClosePairs close;  // close pairs that Q contains
 
-    // Of Q at the point. Single precision is enough for the product with a small move.
+    // Second derivatives of Q at the point. Single precision is enough for the product with a small
+    // move.
     double rest_energy = 0;  // kcal/mol
     Eigen::VectorXd rest_gradient;
     Eigen::MatrixXf rest;
@@ -62,46 +63,46 @@ struct LinearisedModel {
 
     Eigen::Index mobile() const noexcept { return span ? span->basis.cols() : coordinates.mobile; }
     Eigen::Index hands() const noexcept { return coordinates.hands; }
-    // X, and the inverse of H times forces, in the coordinates of the model.
+    // X, and H^-1 times forces, in the coordinates of the model.
     const Eigen::MatrixXd& answer() const noexcept { return span ? span->response : response; }
     Eigen::VectorXd balance(const Eigen::VectorXd& forces) const;
 };
 
-// Where the coordinates of a model say.
+// Moves the state to these coordinates of a model.
 void place_by(const TorsionModel& model, const LinearisedModel& linear, const Eigen::VectorXd& at,
               TorsionState& state);
 
-// What one linearisation uses again at the next; of one model and its hands.
+// Memory and settings reused between linearisations of one model with its hands.
 struct Lineariser {
     HeldParts held;
     LocalCoordinates coordinates;
     FastSecondDerivatives fast;
     SecondDerivativesMemory memory;
     SecondDerivatives all, near;
-    Eigen::MatrixXd rest;  // of all but the near pairs
+    Eigen::MatrixXd rest;  // second derivatives without the near pairs
     AtomMetric metric;
-    double shift = 0;  // of the last factor
+    double shift = 0;  // shift of the last factor
 };
 
 Lineariser build_lineariser(const TorsionModel& model, HeldParts held);
 
 struct LineariseSettings {
     ForceSettings forces;
-    double near_reach = 6;  // Å: pairs of held atoms with atoms so near are exact
-    // The answer is sought in the span of so many responses for each hand; unset: among all
-    // coordinates.
+    double near_reach = 6;  // Å: pairs of held atoms with atoms within this distance are exact
+    // The number of responses per hand that span the solution; unset: all coordinates.
     std::optional<std::size_t> responses;
 };
 
-// At a state with forces. False, and `linear` is of no use, where second derivatives are not
-// finite.
+// Linearises at a state with forces. Returns false, with an unusable `linear`, if second
+// derivatives are not finite.
 [[nodiscard]] bool linearise(const TorsionModel& model, const LineariseSettings& settings,
                              const TorsionState& state, Lineariser& lineariser,
                              LinearisedModel& linear);
 
-// How far each of these atoms goes if everything follows a hand that is displaced: column c of its
-// matrix per Å of the hand's displacement along axis c. `first`: of the hand's three displacements
-// among all hands' coordinates. `state`: where things stand, about the model's point.
+// Displacement of each of these atoms if everything follows a displaced hand: column c of its
+// matrix per Å of the hand's displacement along axis c. `first`: index of the first of the hand's
+// three displacements among all hands' coordinates. `state`: the present state, near the model's
+// point.
 std::vector<Mat3> find_atom_responses(const TorsionModel& model, const LinearisedModel& linear,
                                       const TorsionState& state, Eigen::Index first,
                                       std::span<const std::uint32_t> atoms);

@@ -1,5 +1,5 @@
-// Coordinates about a point of linearisation, those of hands too: numbers that say where everything
-// is, of which an energy has a gradient and a Hessian.
+// Coordinates about a point of linearisation, including those of hands. The energy as a function of
+// them has a gradient and a Hessian.
 #pragma once
 #include "statics/torsion_state.h"
 
@@ -12,8 +12,8 @@
 
 namespace palpa {
 
-// What a hand moves: the place of a base that is not free, and if the hand turns it (a held one)
-// its turn about its pivot; or the place at the end of one of the state's springs.
+// What a hand moves: the position of a base that is not free, and, if the hand turns a held base,
+// its rotation about its pivot; or the end of one of the state's springs.
 struct HandHold {
     std::uint32_t molecule = 0;
     bool turns = false;
@@ -25,7 +25,7 @@ enum class CoordinateKind : std::uint8_t { Joint, Turn, Shift };
 struct CarriedCoordinate {
     Eigen::Index column;
     CoordinateKind kind;
-    int axis;  // of the world: 0, 1 or 2; of a joint -1
+    int axis;  // axis of the world, 0, 1 or 2; -1 for a joint
 };
 
 // First the mobile coordinates of the model, in its order; then those of hands, in theirs: three
@@ -37,24 +37,24 @@ struct CarriedCoordinate {
 struct LocalCoordinates {
     Eigen::Index mobile = 0, hands = 0;
 
-    // Of body b: [first[b], first[b + 1]), turns before displacements.
+    // The coordinates of body b are [first[b], first[b + 1]), turns before displacements.
     std::vector<std::size_t> first;
     std::vector<CarriedCoordinate> carried;
 
     struct SpringEnd {
         std::size_t spring;
-        Eigen::Index column;  // of the first of three
+        Eigen::Index column;  // index of the first of three
     };
     std::vector<SpringEnd> ends;
 
-    // Bodies in an order in which all that hang on body b stand in [entered[b], left[b]).
+    // Bodies ordered so that all descendants of body b lie in [entered[b], left[b]).
     std::vector<std::uint32_t> entered, left;
 
     Eigen::Index size() const noexcept { return mobile + hands; }
     std::span<const CarriedCoordinate> of(std::size_t body) const noexcept {
         return std::span(carried).subspan(first[body], first[body + 1] - first[body]);
     }
-    // Whether `other` is the body itself or is attached to it.
+    // True if `other` is the body itself or one of its descendants.
     bool carries(std::uint32_t body, std::uint32_t other) const noexcept {
         return entered[body] <= entered[other] && entered[other] < left[body];
     }
@@ -63,14 +63,14 @@ struct LocalCoordinates {
 LocalCoordinates build_local_coordinates(const TorsionModel& model,
                                          std::span<const HandHold> hands = {});
 
-// How atoms move with a coordinate: they turn about a point, or go all alike.
+// How atoms move with a coordinate: rotation about a point, or a common translation.
 struct CoordinateMotion {
     Vec3 axis = Vec3::Zero();   // of length 1, or zero
-    Vec3 point = Vec3::Zero();  // on it, Å
+    Vec3 point = Vec3::Zero();  // a point on the axis, Å
     Vec3 shift = Vec3::Zero();  // of length 1, or zero
 
     Vec3 velocity_at(const Vec3& place) const noexcept { return axis.cross(place - point) + shift; }
-    // Angular velocity, and velocity of the place.
+    // Angular velocity, and velocity at this position.
     Vec6 screw_at(const Vec3& place) const noexcept {
         Vec6 screw;
         screw << axis, velocity_at(place);
@@ -78,17 +78,17 @@ struct CoordinateMotion {
     }
 };
 
-// Of each coordinate at a state that is taken as point of linearisation. That of a spring's end
-// moves no atom.
+// Computes the motion for each coordinate at a state taken as point of linearisation. The end of a
+// spring moves no atom.
 void update_motions(const TorsionModel& model, const LocalCoordinates& coordinates,
                     const TorsionState& state, std::vector<CoordinateMotion>& motions);
 
-// Puts `state`, one of this model, where the coordinates say that are counted from `origin`.
+// Moves `state`, a state of this model, to the coordinates counted from `origin`.
 void place_about(const TorsionModel& model, const LocalCoordinates& coordinates,
                  const TorsionState& origin, const Eigen::VectorXd& at, TorsionState& state);
 
-// The gradient of the energy along the coordinates where place_about put the state, from the forces
-// on its atoms; its coordinate forces are written on the way.
+// The gradient of the energy along the coordinates at the state set by place_about, from the forces
+// on its atoms; also updates its coordinate forces.
 Eigen::VectorXd find_gradient(const TorsionModel& model, const LocalCoordinates& coordinates,
                               const TorsionState& origin, const Eigen::VectorXd& at,
                               TorsionState& state);

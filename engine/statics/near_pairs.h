@@ -1,4 +1,4 @@
-// The pairs between what hands hold and the atoms near it, for models that are exact there.
+// Pairs between held atoms and atoms near them, for models that are exact there.
 #pragma once
 #include "field/cluster_list.h"
 #include "field/pair_kernel.h"
@@ -11,19 +11,22 @@
 
 namespace palpa {
 
-// Non-bonded pairs between held atoms and atoms near them, and for whole tiles of the kernel some
-// pairs within either set. Pairs that the topology excludes, or that are three bonds apart, are
-// left out. Constant but for the kernel's memory.
+// Non-bonded pairs between held atoms and atoms near them; to fill whole tiles of the kernel also
+// some pairs within either set. Excluded pairs and 1-4 pairs are not included. Constant except for
+// the kernel's memory.
 struct NearPairs {
     ClusterList tiles;  // summed by the kernel
     PairWorkspace workspace;
-    SolvationTiles solvation;                          // summed by its own kernel
-    std::vector<std::array<std::uint32_t, 2>> others;  // with replaced numbers, summed in double
-    // One by one: both, without solvation, and those of its tiles, of which that alone counts.
+    SolvationTiles solvation;  // summed by its own kernel
+    std::vector<std::array<std::uint32_t, 2>>
+        others;  // pairs with replaced parameters, summed in double
+    // As lists of pairs: the pairs of `tiles` and `others` without solvation, and the pairs of
+    // `solvation`, of which only the solvation part is meant.
     std::vector<std::array<std::uint32_t, 2>> all, solvated;
 };
 
-// `held`: atoms of all hands, rising. An atom is near if it was within `reach` (Å) of one of them.
+// `held`: atoms of all hands, ascending. An atom is near if it is within `reach` (Å) of one of
+// them.
 NearPairs build_near_pairs(const TorsionModel& model, std::span<const Vec3> positions,
                            std::span<const std::uint32_t> held, double reach);
 

@@ -1,5 +1,5 @@
-// Second derivatives of listed pairs alone, in double: what models that are exact near the hand
-// take off those of all pairs.
+// Second derivatives of listed pairs, in double; models that are exact near the hand subtract them
+// from those of all pairs.
 #pragma once
 #include "statics/second_derivatives.h"
 
@@ -9,9 +9,9 @@
 
 namespace palpa {
 
-// As update_second_derivatives, of some plain pairs, each named once: of `pairs` without solvation,
-// and of `solvated` its part alone. The work grows with the number of coordinates that move one of
-// their atoms.
+// As update_second_derivatives, but for some pairs only, each named once: `pairs` without
+// solvation, and the solvation part of `solvated`. The work grows with the number of coordinates
+// that move one of their atoms.
 void update_pair_derivatives(const TorsionModel& model, const LocalCoordinates& coordinates,
                              std::span<const std::array<std::uint32_t, 2>> pairs,
                              std::span<const std::array<std::uint32_t, 2>> solvated,

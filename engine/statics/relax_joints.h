@@ -1,4 +1,4 @@
-// Flexible molecules to rest, all joints at once.
+// Relaxes flexible molecules, all joints at once.
 #pragma once
 #include "core/choices.h"
 #include "statics/step_quasi_static.h"
@@ -9,35 +9,35 @@
 
 namespace palpa {
 
-// Root of the mean square; 0 of none.
+// Root mean square; 0 for an empty vector.
 double rms_of(const Coordinates& values) noexcept;
 
 struct RelaxSettings {
     RelaxMethod method = RelaxMethod::InverseMass;
-    QuasiStaticSettings step;   // forces of all methods, the rest of QuasiStatic
-    double largest_move = 0.3;  // of any atom in one step of the other methods, Å
+    QuasiStaticSettings step;   // force settings for all methods; the rest for QuasiStatic
+    double largest_move = 0.3;  // largest move of an atom in a step of the other methods, Å
     double force_tolerance =
-        0.01;                  // rms over the coordinates, kcal/mol/rad and kcal/mol/Å: the end
-    std::size_t steps = 2000;  // at most
-    bool keeps_pairs = false;  // curvature pairs of the call before still hold
-    // Multiplies forces along the coordinates by an inverse Hessian that the caller knows; empty:
-    // as the method has it.
+        0.01;                  // tolerance: rms over the coordinates, kcal/mol/rad and kcal/mol/Å
+    std::size_t steps = 2000;  // largest number of steps
+    bool keeps_pairs = false;  // curvature pairs of the previous call are still valid
+    // Multiplies forces along the coordinates by an approximate inverse Hessian of the caller;
+    // empty: the method's own.
     std::function<Coordinates(const Coordinates&)> precondition = {};
 };
 
 enum class RelaxEnd : std::uint8_t {
     Converged,  // the tolerance is reached
-    Steps,      // there were no more steps, or `on_step` wanted none
-    Stuck,      // nothing lowers the energy by more than rounding
-    NotFinite,  // energy or forces where it is
+    Steps,      // the number of steps is used up, or `on_step` returned false
+    Stuck,      // no step lowers the energy by more than rounding
+    NotFinite,  // energy or forces are not finite
 };
 
 struct [[nodiscard]] JointRelaxReport {
     double energy_before = 0, energy_after = 0;  // kcal/mol, without terms that are constant
     double rms_force = 0;                        // at the end
-    std::size_t steps = 0;                       // taken
-    std::size_t evaluations = 0;                 // of the forces
-    double largest_move = 0;                     // of any atom from where it started, Å
+    std::size_t steps = 0;                       // steps taken
+    std::size_t evaluations = 0;                 // evaluations of the forces
+    double largest_move = 0;  // largest displacement of an atom from its start, Å
     RelaxEnd end = RelaxEnd::Steps;
 };
 
@@ -46,9 +46,9 @@ struct RelaxProgress {
     double energy, rms_force;
 };
 
-// Until nothing pulls at the coordinates by more than the tolerance. The energy never rises from
-// step to step, but by what fast pairs round. In the end the state has its positions, forces and
-// coordinate forces. `on_step` may be empty; where it returns false the way ends.
+// Relaxes until the rms force along the coordinates is below the tolerance. The energy never rises
+// from step to step, except by rounding of fast pairs. At the end the state has its positions,
+// forces and coordinate forces. `on_step` may be empty; if it returns false, relaxation ends.
 JointRelaxReport relax_joints(const TorsionModel& model, const RelaxSettings& settings,
                               TorsionState& state, QuasiStatics& statics,
                               const std::function<bool(const RelaxProgress&)>& on_step = {});

@@ -7,16 +7,16 @@
 
 namespace palpa {
 
-// Used by the thread that makes steps. Until await(), or until is_ready() says so, nothing may
-// copy, move or replace the statics, settings and model that it was started with. Its destructor
+// Used by the thread that makes steps. Until await() returns, or is_ready() is true, nothing may
+// copy, move or replace the statics, settings and model that it was started with. The destructor
 // waits.
 class RenewalWorker {
 public:
-    // Where a renewal is pending that is not made, and none is being made.
+    // Starts the pending renewal, if there is one that is neither made nor being made.
     void start_if_pending(const TorsionModel& model, const SecondOrderSettings& settings,
                           SecondOrderStatics& statics);
 
-    // Whether the pending one is made, so that it can be adopted.
+    // True if the pending renewal is made and can be adopted.
     bool is_ready(const SecondOrderStatics& statics);
 
     void await();

@@ -29,34 +29,34 @@ void update_atom_metric(const TorsionModel& model, const LocalCoordinates& coord
                         const TorsionState& state, AtomMetric& metric);
 
 struct FactorSettings {
-    // kcal/mol/Å^2, where there is any shift: as if a spring of that held each atom.
+    // kcal/mol/Å^2, smallest nonzero shift: as if a spring of this constant held each atom
     double least_shift = 1e-4;
     std::size_t most_tries = 30;
 };
 
-// Of H, or where that has no factor of H + shift M, M the metric. (Cholesky's factor with negative
-// pivots raised, or L D L^T with the signs of D turned, takes one pass. Both were tried: where a
-// pivot happens to be near zero they answer with moves that are thousands of times too large.)
+// Cholesky factor of H, or, if H is not positive definite, of H + shift M with the metric M.
+// (Factors with negative pivots raised, or L D L^T with the signs of D changed, take one pass. Both
+// were tried: with a pivot near zero they give moves thousands of times too large.)
 struct ResponseFactor {
     CholeskyFactor cholesky;
     double shift = 0;       // kcal/mol/Å^2
-    std::size_t tries = 0;  // factorisations, those that failed too
-    // Directions of negative curvature: none where nothing was shifted, else not known.
+    std::size_t tries = 0;  // factorisations, including failed ones
+    // Number of directions of negative curvature: 0 without a shift, else unknown.
     std::optional<std::size_t> negative = 0;
     Eigen::MatrixXd shifted;  // memory
 };
 
-// False where H is not finite. A failed try yields a direction of negative curvature; the next
-// shift makes that curvature positive and is at least six times the shift before. The first shift
-// starts from a sixth of the factor's last one, since successive states are similar.
+// Returns false if H is not finite. A failed try yields a direction of negative curvature; the next
+// shift makes that curvature positive and is at least six times the previous shift. The first shift
+// is a sixth of the factor's last one, since successive states are similar.
 [[nodiscard]] bool update_response_factor(const SecondDerivatives& derivatives,
                                           const AtomMetric& metric, const FactorSettings& settings,
                                           ResponseFactor& factor);
 
-// The moves that balance the given forces, one column each: the inverse of H + shift M times them.
+// The moves that balance the given forces, one column each: (H + shift M)^-1 times the forces.
 Eigen::MatrixXd find_response(const ResponseFactor& factor, Eigen::MatrixXd forces);
 
-// The stiffness at the hands when everything mobile relaxes, the Schur complement K - G^T H^-1 G
+// The stiffness at the hands with everything mobile relaxed, the Schur complement K - G^T H^-1 G
 // (with H + shift M for H). kcal/mol per Å and rad; not symmetrised.
 Eigen::MatrixXd find_relaxed_stiffness(const SecondDerivatives& derivatives,
                                        const ResponseFactor& factor);

@@ -1,4 +1,4 @@
-// Second derivatives of the energy along joints, bases and what hands move, in double: the
+// Second derivatives of the energy along joints, bases and hand coordinates, in double: the
 // reference of statics/fast_second_derivatives.h.
 #pragma once
 #include "forces/pair_hessian.h"
@@ -12,7 +12,7 @@
 namespace palpa {
 
 // kcal/mol per rad and Å: H of the mobile coordinates, G mixed with those of hands, and K of the
-// hands' coordinates alone, which is the stiffness where nothing else moves.
+// hands' coordinates alone, the stiffness if nothing else moves.
 struct SecondDerivatives {
     Eigen::Index mobile = 0;
     Eigen::MatrixXd all;  // mobile coordinates first, then the hands'
@@ -42,10 +42,10 @@ void update_second_derivatives(const TorsionModel& model, const LocalCoordinates
 // second d d^T) T_j. It is the negative of the Hessian.
 Mat6 pair_block(const Vec3& x_i, const Vec3& x_j, const PairHessian& pair) noexcept;
 
-// One stage of it, shared with other forms. `inward` has for each coordinate the transposed
-// blocks of its body (and of all that hang on it) with all others, times the coordinate's screw,
-// taken about the body's point. Adds to half of the second derivatives: a matrix that makes all of
-// them with its transpose.
+// One stage of the computation, shared with other forms. `inward` holds for each coordinate the
+// transposed blocks of its body and all descendants with all others, times the coordinate's screw
+// about the body's point. Adds to half of the second derivatives: the sum with its transpose gives
+// all of them.
 void add_outward_products(const TorsionModel& model, const LocalCoordinates& coordinates,
                           std::span<const CoordinateMotion> motions, std::span<const Vec3> points,
                           std::span<const Vec6> inward, Eigen::Ref<Eigen::MatrixXd> half);

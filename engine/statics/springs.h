@@ -1,4 +1,4 @@
-// Springs that pull at atoms: a hand on an atom or a residue, a restraint between atoms.
+// Springs on atoms: a hand on an atom or a residue, a restraint between atoms.
 #pragma once
 #include "math/vec.h"
 #include "statics/torsion_model.h"
@@ -9,20 +9,20 @@
 
 namespace palpa {
 
-// A spring from the centre of mass of some atoms to a place, or to the centre of mass of others.
-// E = k (|x - y| - length)^2/2.
+// A spring from the centre of mass of some atoms to a fixed point, or to the centre of mass of
+// other atoms. E = k (|x - y| - length)^2/2.
 struct Spring {
-    std::vector<std::uint32_t> atoms = {};        // whose centre of mass is x; one or more
+    std::vector<std::uint32_t> atoms = {};        // x is their centre of mass; one or more
     double k = 0;                                 // kcal/mol/Å^2
-    Vec3 place = Vec3::Zero();                    // y, Å, where there are no other atoms
-    std::vector<std::uint32_t> other_atoms = {};  // whose centre of mass is y
-    double length = 0;                            // Å, at rest
+    Vec3 place = Vec3::Zero();                    // y, Å, without other atoms
+    std::vector<std::uint32_t> other_atoms = {};  // y is their centre of mass
+    double length = 0;                            // rest length, Å
 
     friend bool operator==(const Spring&, const Spring&) = default;
 };
 
-// The state of a spring. Where both ends of a spring with a length coincide its direction is
-// undefined: it pulls at nothing.
+// The state of a spring. If both ends of a spring with a rest length coincide, its direction is
+// undefined and its force zero.
 struct SpringPull {
     Vec3 stretch;   // x - y, Å
     double k;       // k (1 - length/|x - y|), kcal/mol/Å^2: k times the stretch is the force on y
@@ -32,19 +32,19 @@ struct SpringPull {
 Vec3 find_centre_of_mass(const TorsionModel& model, std::span<const std::uint32_t> atoms,
                          std::span<const Vec3> positions) noexcept;
 
-// Where the other end is, Å.
+// Position of the other end, Å.
 Vec3 find_other_end(const TorsionModel& model, const Spring& spring,
                     std::span<const Vec3> positions) noexcept;
 
 SpringPull find_spring_pull(const TorsionModel& model, const Spring& spring,
                             std::span<const Vec3> positions) noexcept;
 
-// By which it pulls at its other end, kcal/mol/Å.
+// Force on its other end, kcal/mol/Å.
 Vec3 find_spring_force(const TorsionModel& model, const Spring& spring,
                        std::span<const Vec3> positions) noexcept;
 
 // -d(that force)/d(its other end), kcal/mol/Å^2: k along the spring and k (1 - length/|x - y|)
-// across it. Zero where a spring with a length has no direction.
+// across it. Zero if the direction is undefined.
 Mat3 find_spring_stiffness(const TorsionModel& model, const Spring& spring,
                            std::span<const Vec3> positions) noexcept;
 
@@ -52,8 +52,8 @@ Mat3 find_spring_stiffness(const TorsionModel& model, const Spring& spring,
 double add_spring_forces(const TorsionModel& model, const Spring& spring,
                          std::span<const Vec3> positions, std::span<Vec3> forces) noexcept;
 
-// Each atom that a spring pulls at, with the share of the force that it has, by mass: one below 0
-// pulls the other way.
+// Calls `visit` for each atom of a spring with its share of the force, by mass; a negative share
+// has the opposite direction.
 template <class Visit>
 void visit_pulled(const TorsionModel& model, const Spring& spring, const Visit& visit) {
     const auto visit_end = [&](std::span<const std::uint32_t> atoms, double sign) {

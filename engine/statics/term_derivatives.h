@@ -1,5 +1,5 @@
-// What bonded terms, pairs three bonds apart and springs add to the second derivatives of the
-// energy along coordinates: each term by itself, over the coordinates that change it.
+// Contributions of bonded terms, 1-4 pairs and springs to the second derivatives of the energy
+// along coordinates: each term over the coordinates that change it.
 #pragma once
 #include "statics/local_coordinates.h"
 
@@ -10,14 +10,14 @@
 
 namespace palpa {
 
-// A body that moves some of a term's atoms against others: bit a is set for atom a of the term.
+// A body that moves some of a term's atoms relative to others: bit a is set for atom a of the term.
 struct TermStep {
     std::uint32_t body;
     std::uint32_t atoms;
 };
 
-// Of terms of one kind: the bodies that change term t stand in [first[t], first[t + 1]), a parent
-// before what is attached to it.
+// For terms of one kind: the bodies that change term t are in [first[t], first[t + 1]), parents
+// before children.
 struct TermPaths {
     std::vector<std::size_t> first;
     std::vector<TermStep> steps;
@@ -27,15 +27,15 @@ struct TermPaths {
     }
 };
 
-// Of a model's topology; constant.
+// Constant data of a model's topology.
 struct ModelPaths {
     TermPaths bonds, angles, urey_bradleys, dihedrals, impropers, cmap_terms, pairs14;
 };
 
 ModelPaths build_model_paths(const TorsionModel& model);
 
-// Adds what the terms and the state's springs contribute to half of the second derivatives: a
-// matrix that with its transpose makes all of them. `motions` are those of the state.
+// Adds the contributions of the terms and of the state's springs to half of the second derivatives:
+// the sum with its transpose gives all of them. `motions` are those of the state.
 void add_term_derivatives(const TorsionModel& model, const LocalCoordinates& coordinates,
                           const ModelPaths& paths, const NonbondedSettings& settings,
                           const TorsionState& state, std::span<const CoordinateMotion> motions,

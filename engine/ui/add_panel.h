@@ -1,4 +1,5 @@
-// The dialog "Add a molecule": a residue of the scene's force field, a copy, or what is in files.
+// The dialog "Add a molecule": a residue of the scene's force field, a copy of a molecule, or a
+// molecule from files.
 #pragma once
 #include "scene/edits.h"
 #include "simulation/atom_directory.h"
@@ -14,23 +15,23 @@ namespace palpa {
 
 class AddPanel {
 public:
-    // `folder`: of the scene, from which files are named.
+    // `folder`: the scene's folder; file names are relative to it.
     explicit AddPanel(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    // With what was chosen last, or, where the force field has no residues, a copy; that is of what
-    // is in hand, if anything is.
+    // Opens with the last choice, or, if the force field has no residues, with a copy of the held
+    // molecule, if there is one.
     void open(const AtomDirectory& atoms, const std::string& in_hand);
-    // With files, of which a .psf is the topology.
+    // Opens with these files; a .psf file is the topology.
     void open(std::span<const std::filesystem::path> files);
     void close();
     bool is_open() const noexcept { return is_open_; }
 
-    // Enter asks for what is chosen, Up and Down choose in the list; when it is drawn the next
-    // time, so that what was typed before counts.
+    // Enter confirms the choice, Up and Down move in the list. Takes effect at the next drawing, so
+    // that text typed before counts.
     void press(Key key);
 
-    // Describes it to the overlay library. What the person asked for, still without a place: it is
-    // closed then.
+    // Describes the dialog to the overlay library. Returns the person's request, still without a
+    // position, and then closes the dialog.
     std::optional<AddEdit> draw(const AtomDirectory& atoms);
 
 private:
@@ -53,10 +54,10 @@ private:
     bool is_open_ = false;
     Origin origin_ = Origin::Residue;
     std::string search_, residue_, copy_of_, structure_, topology_, segment_, name_;
-    bool has_own_name_ = false;  // the person wrote it
-    bool wants_focus_ = false;   // for the first field
+    bool has_own_name_ = false;  // the person typed the name
+    bool wants_focus_ = false;   // the first field gets the keyboard
     bool wants_add_ = false;
-    int list_steps_ = 0;  // down
+    int list_steps_ = 0;  // pending moves in the list, positive downwards
 };
 
 // The first of base2, base3, ... that no molecule has.

@@ -1,4 +1,4 @@
-// Brings the overlay library onto a window and into a render pass.
+// Connects the overlay library to a window and a render pass.
 #pragma once
 #include "gpu/device.h"
 #include "window/window.h"
@@ -10,8 +10,8 @@ namespace palpa {
 // One at a time. Between `begin` and `end` overlays are described; `draw` draws them.
 class UiBackend {
 public:
-    // `pass` has one colour attachment; `images` of them may be under way. `text_scale`: of text
-    // and panels, over their usual size. Throws GpuError.
+    // `pass` has one colour attachment; `images`: number of frames in flight. `text_scale`: size of
+    // text and panels relative to normal. Throws GpuError.
     UiBackend(const Window& window, GpuDevice& device, VkRenderPass pass, std::uint32_t images,
               float text_scale);
     UiBackend(const UiBackend&) = delete;
@@ -22,10 +22,10 @@ public:
     void end();
     void draw(VkCommandBuffer commands);
 
-    // Whether an overlay wants the mouse or the keys for itself.
+    // True if an overlay uses the mouse, or the keys.
     bool wants_mouse() const;
     bool wants_keys() const;
-    // Whether an overlay lies at this place of the last frame, in pixels.
+    // True if an overlay covered this point of the last frame, in pixels.
     bool covers(double x, double y) const;
 
 private:
@@ -33,7 +33,7 @@ private:
     VkDescriptorPool descriptors_ = VK_NULL_HANDLE;
 };
 
-// Fonts and colours of the overlays, into the present context.
+// Sets fonts and colours of the overlays in the present context.
 void set_ui_style(float text_scale);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// A few large words over the picture.
+// Draws a large caption over the picture.
 #pragma once
 #include "ui/layout.h"
 
@@ -6,8 +6,8 @@
 
 namespace palpa {
 
-// Between begin and end of the overlay library's frame, under all panels, in the upper part of the
-// area. Where the words are wider than that they are smaller.
+// Call between begin and end of the overlay library's frame. Drawn below all panels in the upper
+// part of the area, smaller if the text is too wide.
 void draw_caption(const std::string& text, const ScreenArea& area);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// A dialog that looks for a file on disk.
+// A dialog to choose a file on disk.
 #pragma once
 #include "window/window.h"
 
@@ -12,17 +12,18 @@ namespace palpa {
 
 class FileBrowser {
 public:
-    // `endings`: of the files that are wanted, in lower case (".pdb"); compressed ones (".pdb.gz")
-    // are shown too. Begins in `folder`, or where it was before.
+    // `endings`: accepted file extensions in lower case (".pdb"); compressed files (".pdb.gz") are
+    // shown too. Starts in `folder`, or in the folder of the last time.
     void open(std::string title, std::vector<std::string> endings,
               const std::filesystem::path& folder);
     void close();
     bool is_open() const noexcept { return is_open_; }
 
-    // Up and Down choose in the list, Enter opens what is chosen.
+    // Up and Down move in the list, Enter opens the choice.
     void press(Key key);
 
-    // Describes it to the overlay library. A file that was chosen: it is closed then.
+    // Describes the dialog to the overlay library. Returns the chosen file and then closes the
+    // dialog.
     std::optional<std::filesystem::path> draw();
 
 private:
@@ -41,12 +42,12 @@ private:
     std::string title_;
     std::vector<std::string> endings_;
     std::filesystem::path folder_;
-    std::string typed_;    // the path at the top
-    std::string problem_;  // of the folder, or of what was typed
+    std::string typed_;    // text of the path field
+    std::string problem_;  // problem with the folder or with the typed path
     std::vector<Entry> entries_;
     std::size_t chosen_ = 0;
-    int steps_ = 0;            // down
-    bool is_cut_off_ = false;  // the folder has more
+    int steps_ = 0;            // pending moves in the list, positive downwards
+    bool is_cut_off_ = false;  // the folder has more entries than shown
     bool shows_all_ = false, wants_enter_ = false;
 };
 

@@ -1,4 +1,4 @@
-// The last seconds of a session, thinned, for the plots.
+// A thinned record of the last seconds of a session, for the plots.
 #pragma once
 #include "session/reading.h"
 
@@ -13,11 +13,11 @@ public:
     static constexpr double seconds = 10;
     static constexpr int ticks_per_sample = 10;
 
-    // Every tick in its order; one of ten is kept. Where the clock goes back, of another device, it
-    // begins anew.
+    // Call for every tick in order; one of ten is stored. If the clock goes back (another device),
+    // the record restarts.
     void add(const Reading& reading);
 
-    // Those of the last seconds, in the order of time.
+    // The stored readings in the order of time.
     std::span<const Reading> samples() const noexcept;
 
 private:

@@ -1,4 +1,4 @@
-// The window's languages to choose from, each called as those who speak it call it.
+// The list of the window's languages, each with its own name for itself.
 #pragma once
 #include "core/translate.h"
 
@@ -8,8 +8,8 @@
 
 namespace palpa {
 
-// Describes the list to the overlay library; the code of the language that was chosen. Where there
-// is only one there is no list.
+// Describes the list to the overlay library; returns the code of a newly chosen language. With a
+// single language there is no list.
 std::optional<std::string> draw_language_list(std::span<const Language> languages);
 
 }  // namespace palpa

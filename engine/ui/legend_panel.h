@@ -1,4 +1,4 @@
-// What the picture's colours mean, in a corner of it.
+// The legend of the picture's colours.
 #pragma once
 #include "ui/layout.h"
 #include "view/atom_colours.h"
@@ -7,8 +7,8 @@
 
 namespace palpa {
 
-// Describes it to the overlay library, in the lower left corner of `area`; nothing where there are
-// no entries. The mouse goes through it.
+// Describes the legend to the overlay library, in the lower left corner of `area`; nothing without
+// entries. It does not take mouse input.
 void draw_legend_panel(std::span<const LegendEntry> legend, const ScreenArea& area);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// The overlays of a running scene: what is felt and why, and everything that can be changed.
+// The overlays of a running scene: readings, explanations and controls.
 #pragma once
 #include "scene/description.h"
 #include "session/commands.h"
@@ -19,29 +19,30 @@
 
 namespace palpa {
 
-// A device that a person may choose.
+// A device that can be chosen.
 struct DeviceOffer {
-    std::string name, summary;  // as --device takes it; in a few words
-    bool is_there = true;       // as far as can be seen
-    bool is_stand_in = false;   // for hardware: taken only when asked for, and never remembered
+    std::string name, summary;  // name for --device; short description
+    bool is_there = true;       // as far as it can be detected
+    bool is_stand_in =
+        false;  // a substitute for hardware: used only on request, and never remembered
 };
 
-// What the window knows beside the readout.
+// State of the window beside the readout.
 struct OverlayStatus {
     ServoHealth servo;
     std::string device_name, gpu_name;
     double frame_ms = 0;
     double render_scale = 1;
-    bool has_mouse_hand = true;        // the mouse can take the molecule
-    bool holding = false;              // and has it
-    std::string notice;                // of the last seconds, such as where a screenshot went
-    std::vector<DeviceOffer> devices;  // to choose from; none: there is no choice
-    std::string device;                // the one in use, of these names
+    bool has_mouse_hand = true;  // the mouse can hold the molecule
+    bool holding = false;        // the mouse holds it
+    std::string notice;          // notice of the last seconds, such as the path of a screenshot
+    std::vector<DeviceOffer> devices;  // devices to choose from; may be empty
+    std::string device;                // name of the device in use
     bool sounds = false;               // the force is played as a tone
-    std::string hover;                 // what the mouse rests on, and what a click would take
-    std::optional<double> recorded_s;  // of a recording that is under way
+    std::string hover;  // description of what is under the mouse and what a click would take
+    std::optional<double> recorded_s;  // length of the running recording
     std::vector<LegendEntry> legend;   // of the picture's colours
-    bool selects = false;              // the panel of selections is in the lesson's place
+    bool selects = false;              // the panel of selections replaces the lesson
 };
 
 class Overlay {
@@ -50,34 +51,34 @@ public:
 
     void add_tick(const ServoTick& tick);
 
-    // Describes all overlays to the overlay library, between begin and end of its frame. What the
-    // person asks for is appended to `commands` and `actions`.
+    // Describes all overlays to the overlay library; call between begin and end of its frame.
+    // Appends the person's requests to `commands` and `actions`.
     void draw(const Readout& readout, const OverlayStatus& status, std::vector<Command>& commands,
               std::vector<Action>& actions);
 
-    // Does what an action means for settings and overlays; false where it is the window's business.
+    // Carries out an action on settings and overlays; returns false if it belongs to the window.
     bool perform(Action action, std::vector<Command>& commands);
 
-    // An edit was sent, the next to be undone; one that turns out refused is forgotten again.
+    // Records that an edit was sent, so that undo applies to it; a refused edit is removed again.
     void note_edit();
 
-    // What is added to the picture: a change is a step that can be undone.
+    // Sets additions to the picture; a change can be undone.
     void set_additions(ViewAdditions additions);
     const ViewAdditions& additions() const noexcept { return additions_; }
 
-    // The name of the device that the person has chosen since the last call.
+    // The name of the device chosen since the last call.
     std::optional<std::string> take_device() { return std::exchange(device_, std::nullopt); }
 
-    // The hand feels a spring, at this moment, that it cannot keep calm at the present period.
+    // True if the hand now feels a spring too stiff for passivity at the present period.
     bool is_shaking(const Readout& readout) const;
 
-    // What no panel covers, of a window of that size in pixels: the picture's middle.
+    // The area that no panel covers, for a window of this size in pixels.
     ScreenArea free_area(float width, float height) const;
 
-    // Closes an open list or the help; false where there is nothing to close.
+    // Closes an open list or the help; false if nothing is open.
     bool close_something();
 
-    // Of the curves as they are drawn, between their axes, pixels.
+    // Height of the plots between their axes, pixels.
     float plot_height() const noexcept { return plot_height_; }
 
     const LiveSettings& settings() const noexcept { return settings_; }
@@ -115,9 +116,9 @@ private:
     void draw_help();
 
     void forget_refused(const Readout& readout);
-    // Of the slider just described: an edit that ends becomes one step of undo.
+    // For the previous slider: a finished change becomes one step of undo.
     void remember_edit(const LiveSettings& before);
-    // One slider over a setting.
+    // One slider for a setting.
     void slide(const char* label, double& value, double low, double high, const char* format,
                bool logarithmic, const char* tip);
     void set_mode(CouplingMode mode, std::vector<Command>& commands);
@@ -130,42 +131,43 @@ private:
     struct EditStep {
         friend bool operator==(const EditStep&, const EditStep&) = default;
     };
-    // What to go back to: of an edit the session knows it.
+    // What undo restores; the session stores the state for edits.
     using UndoStep = std::variant<EditStep, LiveSettings, ViewAdditions>;
     std::vector<UndoStep> undo_, redo_;
     ViewAdditions additions_;
     std::uint64_t refused_edits_ = 0;
     bool has_flexible_;           // molecules
-    double stiffness_limit_ = 0;  // N/m that this hand keeps calm at the present period
-    // How long each warning stays.
+    double stiffness_limit_ = 0;  // N/m, largest stiffness that is passive at the present period
+    // Remaining time of each warning.
     double shaking_for_s_ = 0, clamped_for_s_ = 0, late_for_s_ = 0, at_wall_for_s_ = 0;
 
     Lesson lesson_;
-    std::vector<double> measured_;  // of its steps, as the last readout has it
+    std::vector<double> measured_;  // values of the lesson's steps in the last readout
     LessonCurve lesson_curve_;
     History history_;
     Reading last_;
     bool has_tick_ = false, clamped_ = false, stopped_ = false;
     SafetyStage stage_ = SafetyStage::None, reason_ = SafetyStage::None;
     double felt_N_per_m_ = 0, cap_ratio_ = 1, hand_energy_J_ = 0, overtravel_m_ = 0;
-    double side_ = 0;  // of the counterpart, on one axis, where the molecule began
+    double side_ = 0;  // side of the counterpart on which the molecule started, in one dimension
     bool went_through_ = false;
     bool wants_pause_ = false;
     double force_gain_ = 0;
-    float sliders_height_ = 0, plot_height_ = 0;  // pixels, as drawn last
+    float sliders_height_ = 0, plot_height_ = 0;  // pixels, at the last drawing
     float left_covered_ = 0, right_covered_ = 0;  // pixels, by the panels
-    bool selects_ = false;                        // the panel of selections is there
+    bool selects_ = false;                        // the panel of selections is shown
 
-    std::optional<std::string> device_;              // just chosen
-    bool left_folds_ = false, right_folds_ = false;  // the panels, for a small window
+    std::optional<std::string> device_;  // newly chosen
+    bool left_folds_ = false,
+         right_folds_ = false;  // whether the panels are collapsed in a small window
     bool shows_overlays_ = true, shows_lesson_ = true, shows_help_ = false;
-    std::vector<double> x_, y_, z_;  // of the plots, kept for their room
+    std::vector<double> x_, y_, z_;  // memory of the plots, reused
 };
 
-// Centimetres that the handle goes for one Å of the molecule.
+// Centimetres of handle travel per Å of the molecule.
 double cm_per_angstrom(double displacement_gain);
 
-// The stiffness that the hand feels at this moment (N/m), at most, in the paper's modes.
+// The largest stiffness that the hand feels now (N/m), in the paper's modes.
 double felt_stiffness(const CouplingLaws& laws, const ContactModel& contact);
 
 }  // namespace palpa

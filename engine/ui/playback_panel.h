@@ -1,4 +1,4 @@
-// The panel under the picture while a trajectory is played.
+// The panel below the picture during playback of a trajectory.
 #pragma once
 #include "core/translate.h"
 #include "session/commands.h"
@@ -10,12 +10,12 @@ namespace palpa {
 
 inline constexpr const char* playback_panel = for_translation("Trajectory");  // its title
 
-// Describes it to the overlay library, in the middle of `area`: play and pause, which frame, how
-// fast. What the person asks for is appended.
+// Describes the panel to the overlay library, in the middle of `area`: play and pause, frame,
+// speed. Appends the person's requests.
 void draw_playback_panel(const PlaybackState& state, const ScreenArea& area,
                          std::vector<Command>& commands);
 
-// What the key of "play, pause" and that of "from the beginning" ask for.
+// The orders for the keys "play, pause" and "from the beginning".
 PlaybackOrder play_or_pause(const PlaybackState& state);
 PlaybackOrder play_from_start();
 

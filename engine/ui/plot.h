@@ -11,16 +11,16 @@ struct PlotRange {
     double low = 0, high = 1;
 };
 
-// Room for all values, at least `least` wide, with a margin; around 0 where there are none.
+// A range that contains all values with a margin, at least `least` wide; around 0 without values.
 PlotRange range_around(std::span<const double> values, double least);
 
-// About `count` round numbers inside the range, 1, 2 or 5 times a power of ten apart.
+// About `count` round numbers inside the range, with steps of 1, 2 or 5 times a power of ten.
 std::vector<double> round_ticks(PlotRange range, int count);
 
 struct PlotLine {
     std::span<const double> x, y;  // of one length
     ImU32 colour = 0;
-    std::string_view name;  // in the legend; empty: none
+    std::string_view name;  // name in the legend; empty: no entry
 };
 
 struct PlotPoint {
@@ -29,16 +29,16 @@ struct PlotPoint {
 };
 
 struct Plot {
-    std::string_view x_label, y_label;  // with unit; without x_label no numbers stand below
+    std::string_view x_label, y_label;  // with unit; without x_label the x axis has no numbers
     PlotRange x, y;
     std::span<const PlotLine> lines;
     std::span<const PlotPoint> points{};
 };
 
-// What the labels of a plot take of its height, pixels.
+// Height of the labels of a plot, pixels.
 float plot_label_height(bool has_x_label);
 
-// Draws the plot at the cursor, `height` pixels high with its labels and as wide as the window.
+// Draws the plot at the cursor, `height` pixels high including labels and as wide as the window.
 void draw_plot(const char* id, const Plot& plot, float height);
 
 }  // namespace palpa

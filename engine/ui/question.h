@@ -1,4 +1,4 @@
-// A question over the picture that must be answered first.
+// A modal question over the picture.
 #pragma once
 #include "window/window.h"
 
@@ -10,8 +10,8 @@
 namespace palpa {
 
 struct Answer {
-    Key key;           // that gives it
-    std::string text;  // on its button, with the key
+    Key key;           // key that gives the answer
+    std::string text;  // text of its button, with the key
     std::function<void()> then{};
 };
 
@@ -20,10 +20,11 @@ struct Question {
     std::vector<Answer> answers;
 };
 
-// The answer that a key gives; null: none.
+// The answer for a key; null: none.
 const Answer* find_answer(const Question& question, Key key);
 
-// Describes it to the overlay library; the answer whose button was pressed, or null.
+// Describes the question to the overlay library; returns the answer whose button was pressed, or
+// null.
 const Answer* draw_question(const Question& question);
 
 }  // namespace palpa

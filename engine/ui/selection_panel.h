@@ -1,4 +1,4 @@
-// The panel "Select": which atoms, and what is done with them.
+// The panel "Select": selects atoms and acts on them.
 #pragma once
 #include "core/translate.h"
 #include "scene/choices.h"
@@ -13,37 +13,38 @@ namespace palpa {
 
 inline constexpr const char* selection_panel = for_translation("Select");
 
-// What is selected at the moment.
+// The present selection.
 struct SelectionStatus {
-    std::string expression;  // empty: nothing is
+    std::string expression;  // empty: nothing is selected
     std::string count;       // "12 residues, 180 atoms"
-    std::string problem;     // of the expression that was asked for last, with its column
+    std::string problem;     // problem with the last requested expression, with its column
 };
 
-// What the person asked for.
+// The person's requests.
 struct SelectionOrder {
-    std::optional<std::string> select;       // this expression; empty: nothing
-    std::optional<ViewAdditions> additions;  // from now on
-    bool focus = false;                      // look at what is selected
+    std::optional<std::string> select;       // select this expression; empty: nothing
+    std::optional<ViewAdditions> additions;  // new additions to the picture
+    bool focus = false;                      // move the camera to the selection
 };
 
 class SelectionPanel {
 public:
-    // The field takes the keys.
+    // Gives the keyboard to the field.
     void open();
     void close();
     bool is_open() const noexcept { return is_open_; }
-    // It was opened, and its field is not there yet.
+    // True if it was opened and its field is not drawn yet.
     bool awaits_keys() const noexcept { return awaits_keys_; }
 
-    // A key while a field has the keys: where it is this one, Enter asks for its expression, Esc
-    // ends typing. When it is drawn the next time, so that what was typed before counts.
+    // Handles a key while a field has the keyboard: in this panel's field Enter requests its
+    // expression and Esc ends typing. Takes effect at the next drawing, so that text typed before
+    // counts.
     void press(Key key);
 
-    // Of a selection that was made elsewhere: the field shows it.
+    // Shows a selection made elsewhere in the field.
     void show(const std::string& expression);
 
-    // Describes it to the overlay library, at the lower edge of the area.
+    // Describes the panel to the overlay library, at the lower edge of the area.
     SelectionOrder draw(const SelectionStatus& status, const ViewAdditions& additions,
                         const ScreenArea& area);
 
@@ -58,7 +59,7 @@ private:
     std::optional<Key> pressed_;
     std::string text_;
     Representation representation_ = Representation::Licorice;
-    std::optional<Colouring> colouring_;  // as everything
+    std::optional<Colouring> colouring_;  // nothing: the colouring of everything
 };
 
 }  // namespace palpa

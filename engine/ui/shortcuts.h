@@ -1,4 +1,4 @@
-// What a person may do with a key, in one list: the window obeys it, the help shows it.
+// The list of keyboard shortcuts: used by the window and shown in the help.
 #pragma once
 #include "window/window.h"
 
@@ -59,17 +59,17 @@ enum class Action {
 
 struct Shortcut {
     Key key;
-    bool control;  // with Ctrl
+    bool control;  // with the Ctrl key
     Action action;
-    std::string_view name;  // as the help shows the key
+    std::string_view name;  // name of the key in the help
     std::string_view does;
-    bool shift = false;  // with Shift; else it does not matter
+    bool shift = false;  // true: with Shift; false: with or without
 };
 
-// Keys that act when pressed.
+// All shortcuts.
 std::span<const Shortcut> shortcuts() noexcept;
 
-// Everything else that mouse and keys do, for the help.
+// Other uses of mouse and keys, for the help.
 struct Gesture {
     std::string_view name, does;
 };
@@ -77,7 +77,7 @@ std::span<const Gesture> gestures() noexcept;
 
 std::optional<Action> find_action(Key key, bool control, bool shift = false) noexcept;
 
-// All of it, for the help, in its language: the keys of one action together.
+// All lines of the help in its language; the keys of one action stand together.
 struct HelpLine {
     std::string keys, does;
 };

@@ -1,4 +1,4 @@
-// What choices of a scene's file are called in the window, in its language.
+// Names of a scene file's options as shown in the window, in its language.
 #pragma once
 #include "scene/choices.h"
 

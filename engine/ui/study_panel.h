@@ -1,10 +1,10 @@
-// What a person reads who takes part in a study: nothing else stands over the picture.
+// The text for a participant of a study; nothing else covers the picture.
 #pragma once
 #include "experiments/study_course.h"
 
 namespace palpa {
 
-// Between begin and end of the overlay library's frame.
+// Call between begin and end of the overlay library's frame.
 void draw_study_panel(const StudyCourse& course);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// What a person adds to how everything is drawn, and can undo.
+// A person's additions to the picture, which can be undone.
 #pragma once
 #include "scene/description.h"
 
@@ -9,8 +9,8 @@ namespace palpa {
 
 struct ViewAdditions {
     std::vector<ViewLayer> layers{};
-    std::vector<std::string> labels{};  // selections that are named
-    std::vector<std::string> hidden{};  // selections that layers alone draw
+    std::vector<std::string> labels{};  // selections with labels
+    std::vector<std::string> hidden{};  // selections that only layers draw
 
     friend bool operator==(const ViewAdditions&, const ViewAdditions&) = default;
 };

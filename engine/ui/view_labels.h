@@ -1,4 +1,4 @@
-// The words beside things in the picture.
+// Draws the labels in the picture.
 #pragma once
 #include "render/frame_scene.h"
 #include "view/signs.h"
@@ -7,8 +7,9 @@
 
 namespace palpa {
 
-// Between begin and end of the overlay library's frame, under all panels, each below its place, and
-// farther down where another is. A tick is left out where it would cover another label.
+// Call between begin and end of the overlay library's frame. Drawn below all panels; each label
+// below its point, farther down if another is in the way. A tick is omitted if it would cover
+// another label.
 void draw_view_labels(std::span<const ViewLabel> labels, const FrameCamera& camera);
 
 }  // namespace palpa

@@ -32,15 +32,15 @@ std::vector<glm::vec3> find_colours(const World& world, Colouring colouring,
                                     std::span<const ResidueSpan> residues,
                                     std::span<const SecondaryStructure> structure);
 
-// What the colours mean, for people: a few words each; empty where that is seen without.
+// The meaning of the colours, a few words each; empty if self-evident.
 struct LegendEntry {
     glm::vec3 colour{1};
     std::string text;
 };
 std::vector<LegendEntry> find_legend(const World& world, Colouring colouring);
 
-// The force (kcal/mol/Å) of each atom on what is in the first hand: pairs within 12 Å; 0 of those
-// that are held, or bonded to such over three bonds or fewer.
+// The force (kcal/mol/Å) of each atom on what the first hand holds: pairs within 12 Å; 0 for held
+// atoms and atoms within three bonds of these.
 std::vector<double> find_pushes(const World& world);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// What one picture of a simulation shows. The only place where doubles become floats.
+// Builds the picture of a simulation. Here, and only here, double precision becomes single.
 #pragma once
 #include "ecs/world.h"
 #include "haptics/exchange.h"
@@ -17,24 +17,23 @@ namespace palpa {
 struct ViewSettings {
     Representation representation = Representation::BallAndStick;
     Colouring colouring = Colouring::Chain;
-    bool force_arrow = true;  // on the grabbed molecule; and its torque where it moves in space
+    bool force_arrow = true;  // force on the held molecule; also its torque if it moves in space
     ShownBonds hydrogen_bonds = ShownBonds::InHand;
-    std::vector<ViewLayer> layers{};    // drawn besides
-    std::vector<std::string> labels{};  // selections that are named
+    std::vector<ViewLayer> layers{};    // drawn in addition
+    std::vector<std::string> labels{};  // selections with labels
     ShownHydrogens hydrogens = ShownHydrogens::All;
     Shadows shadows = Shadows::None;
     bool occlusion = true;
-    int outline = 1;                    // pixels
-    std::vector<std::string> hidden{};  // selections that layers alone draw
+    int outline = 1;                    // width of the outline, pixels
+    std::vector<std::string> hidden{};  // selections that only layers draw
     ViewMarks marks{};
-    glm::vec3 background{1};  // into which what is older fades
+    glm::vec3 background{1};  // background into which older parts of trails fade
 
     friend bool operator==(const ViewSettings&, const ViewSettings&) = default;
 };
 
-// Builds one frame after another, and keeps what hardly changes between them: secondary structure,
-// ribbons, surfaces, and what selections mean. One for each view of a world; any world may follow
-// another.
+// Builds frames and reuses what rarely changes: secondary structure, ribbons, surfaces and
+// evaluated selections. Use one per view of a world; worlds may be changed.
 class FrameBuilder {
 public:
     FrameBuilder();
@@ -42,17 +41,17 @@ public:
     FrameBuilder& operator=(FrameBuilder&&) noexcept;
     ~FrameBuilder();
 
-    // Atoms as spheres, bonds as sticks, ribbons and surfaces as meshes, in Å as they stand, each
-    // molecule as the settings say or as its Appearance does, the settings' layers besides, and the
-    // signs of view/signs.h for what hands hold, with the force of `contacts`, of the hands in
-    // their order; `labels` are the words beside these, for whoever can write. The camera is the
-    // caller's (view/orbit_camera.h). Throws LoadError for a layer's or label's selection that is
-    // none, or names what is not there.
+    // Atoms as spheres, bonds as sticks, ribbons and surfaces as meshes, in Å at their present
+    // positions. Each molecule is drawn according to the settings or to its Appearance, plus the
+    // settings' layers and the signs of view/signs.h for what hands hold, with the force of
+    // `contacts` (in the order of hands). `labels` are texts beside these. The caller sets the
+    // camera (view/orbit_camera.h). Throws LoadError for a malformed selection of a layer or label,
+    // or one that names something missing.
     FrameScene build(const World& world, std::span<const ContactModel> contacts,
                      const ViewSettings& settings, std::vector<ViewLabel>* labels = nullptr);
 
-    // Between frames, as often as wanted, the first time before anything has moved: for marks of
-    // what was before, where frames are few. `build` does it as well.
+    // Updates marks of the past between frames, if frames are rare. Call it as often as wanted, the
+    // first time before anything has moved. `build` calls it as well.
     void follow(const World& world, const ViewMarks& marks);
 
 private:
@@ -60,17 +59,17 @@ private:
     std::unique_ptr<Kept> kept_;
 };
 
-// A frame alone.
+// A single frame.
 FrameScene build_frame(const World& world, std::span<const ContactModel> contacts,
                        const ViewSettings& settings, std::vector<ViewLabel>* labels = nullptr);
-// The same with the forces as they are now, for which the pairs are summed again.
+// The same with present forces; the pairs are summed again.
 FrameScene build_frame(const World& world, const ViewSettings& settings,
                        std::vector<ViewLabel>* labels = nullptr);
 
-// The contacts of all hands, with the forces as they are now.
+// The contacts of all hands with present forces.
 std::vector<ContactModel> find_contacts(const World& world);
 
-// The atoms of a range among a frame's spheres.
+// The spheres of a frame that show atoms of a range.
 std::vector<SphereShape> shapes_of(const FrameScene& frame, const AtomRange& atoms);
 
 }  // namespace palpa

@@ -14,10 +14,10 @@
 
 namespace palpa {
 
-// How finely it is drawn.
+// The resolution of the drawing.
 struct CartoonDetail {
-    int pieces = 8;  // a residue, at least 2
-    int sides = 12;  // of tubes and helices, at least 4
+    int pieces = 8;  // segments per residue, at least 2
+    int sides = 12;  // sides of tubes and helices, at least 4
 };
 
 // Coarser for large systems.
@@ -26,8 +26,9 @@ CartoonDetail cartoon_detail(std::size_t residues) noexcept;
 // What was drawn.
 struct CartoonParts {
     std::size_t helices = 0, strands = 0, arrowheads = 0;
-    std::size_t base_plates = 0;  // two of a purine, one for each ring
-    std::vector<bool> shown;      // one a residue; others have to be shown in some other way
+    std::size_t base_plates = 0;  // two for a purine, one for each ring
+    std::vector<bool>
+        shown;  // one entry per residue; residues that are not shown need another representation
 };
 
 // Adds one mesh of closed bodies. `structure` is one a residue (ResidueStructure of
@@ -44,9 +45,9 @@ CartoonParts add_cartoon(const AtomTable& atoms, std::span<const ResidueSpan> re
                          std::span<const glm::vec3> colours, const CartoonDetail& detail,
                          FrameScene& frame);
 
-// The same of a world's atoms, as finely as is right for so many residues. As in
-//   const std::vector<ResidueSpan> residues = find_residues(world);
-//   add_cartoon(world, residues, residue_structure.update(atoms, residues), colours, frame);
+// The same for the atoms of a world, with a resolution that suits the number of residues. As in
+// const std::vector<ResidueSpan> residues = find_residues(world); add_cartoon(world, residues,
+// residue_structure.update(atoms, residues), colours, frame);
 CartoonParts add_cartoon(const World& world, std::span<const ResidueSpan> residues,
                          std::span<const SecondaryStructure> structure,
                          std::span<const glm::vec3> colours, FrameScene& frame);

@@ -6,7 +6,7 @@
 
 namespace palpa {
 
-// Adds chains of two nucleotides or more, and says so in `parts`.
+// Adds chains of two nucleotides or more and records them in `parts`.
 void add_nucleic_acids(const AtomTable& atoms, std::span<const ResidueSpan> residues,
                        std::span<const glm::vec3> colours, const CartoonDetail& detail,
                        MeshShape& mesh, CartoonParts& parts);

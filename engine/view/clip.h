@@ -1,4 +1,4 @@
-// Leaves out of a picture what hides the molecule in hand.
+// Removes what hides the held molecule from a picture.
 #pragma once
 #include "molecule/atoms.h"
 #include "render/frame_scene.h"
@@ -8,10 +8,10 @@
 
 namespace palpa {
 
-// Removes the atoms of others, and the bonds at them, that stand nearer to the camera than an atom
-// of the molecule in hand and within 2 Å beside it as the camera sees it, and atoms that lose all
-// their bonds by that. What a hydrogen bond leads to stays, with its own bonds. Of a frame whose
-// atoms are picked by their index, those of `held` are the grabbed molecule's.
+// Removes atoms of other molecules, with their bonds, that are nearer to the camera than an atom of
+// the held molecule and within 2 Å beside it in the picture, and atoms that lose all their bonds by
+// that. Partners of hydrogen bonds stay, with their own bonds. In a frame whose atoms are picked by
+// index, `held` are the held molecule's atoms.
 void clip_in_front(const AtomRange& held, const OrbitCamera& camera, FrameScene& frame);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// Contacts, clashes and salt bridges, drawn between the atoms.
+// Finds and draws contacts, clashes and salt bridges between atoms.
 #pragma once
 #include "ecs/world.h"
 #include "molecule/measure.h"

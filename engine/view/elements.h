@@ -1,4 +1,4 @@
-// Which element an atom is.
+// The element of an atom.
 #pragma once
 #include "molecule/atoms.h"
 
@@ -7,7 +7,7 @@
 
 namespace palpa {
 
-// As the force field names it, or by the first letter of the atom's name.
+// From the force field, or else from the first letter of the atom's name.
 inline std::string_view element_of(const AtomTable& atoms, std::size_t i) {
     if (!atoms.element[i].empty()) return atoms.element[i];
     const std::string_view name = atoms.names[i].atom;

@@ -1,4 +1,4 @@
-// Where something new has room among atoms, near what a person looks at.
+// Finds free space for a new molecule near the centre of view.
 #pragma once
 #include "math/vec.h"
 #include "view/orbit_camera.h"
@@ -9,18 +9,18 @@
 
 namespace palpa {
 
-// What is to be added: atoms counted from its reference atom, and how far from `taken` each stays.
-// Of something whose shape is not known: one atom, farther from the rest.
+// The new molecule: positions of its atoms relative to its reference atom, and the gap to atoms in
+// `taken`. If its shape is unknown: one atom with a larger gap.
 struct Newcomer {
     std::span<const Vec3> atoms;  // Å
     double gap = 3;               // Å
 };
 
-// The place for its reference atom that is nearest to the camera's target, turned as it is. Tried
-// are the places of a grid along the picture's axes: 1 Å apart within 16 Å of the target, twice as
-// far apart in each further shell, which is twice as thick. Of places equally near the one that is
-// least in front or behind, then the upper one, then the one at the right. Nothing where none is
-// within 10000 Å of the origin.
+// The position for its reference atom that is nearest to the camera's target, in its given
+// orientation. Candidates are grid points along the picture's axes: 1 Å apart within 16 Å of the
+// target, then twice the spacing in each further shell, which is twice as thick. Among equally near
+// points the one least in front or behind wins, then the upper one, then the one to the right.
+// Nothing if no point within 10000 Å of the origin is free.
 std::optional<Vec3> find_room(std::span<const glm::vec3> taken, const Newcomer& newcomer,
                               const OrbitCamera& camera);
 

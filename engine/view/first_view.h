@@ -1,5 +1,4 @@
-// How a scene is seen at first: what its [view] says, and what shows it best where that says
-// nothing.
+// The first view of a scene: from its [view], with suitable defaults.
 #pragma once
 #include "ecs/world.h"
 #include "molecule/atoms.h"
@@ -11,18 +10,18 @@
 
 namespace palpa {
 
-// Unless the scene says, balls and sticks, but `pocket` where others would hide the molecule.
+// Defaults: balls and sticks, but `pocket` if other atoms would hide the molecule.
 ViewSettings first_settings(const ViewDescription& view, const World& world);
 
-// The atoms that the picture is to frame: a molecule's, or none where it is to frame everything.
+// The atoms to be framed: a molecule's, or an empty range for everything.
 AtomRange framed_atoms(const ViewDescription& view, const World& world);
 
-// Sees those atoms of a frame, or everything, as the scene says.
+// A camera that frames these atoms, or everything, as the scene says.
 OrbitCamera first_camera(const ViewDescription& view, const FrameScene& frame,
                          const AtomRange& framed, const Room& room);
 
-// The `camera` of a [view] that sees the frame as this camera does, but for where it was shifted
-// to: to tenths of a degree and hundredths of the zoom, within what the key takes.
+// The `camera` of a [view] for this camera, without its shift: to 0.1 degree and 0.01 of the zoom,
+// within the key's limits.
 std::array<double, 3> describe_camera(const OrbitCamera& camera, const ViewDescription& view,
                                       const FrameScene& frame, const AtomRange& framed,
                                       const Room& room);

@@ -1,4 +1,4 @@
-// What residues or atoms do to what is in a hand: the force on it in parts.
+// The force on what a hand holds, split by residues or atoms.
 #pragma once
 #include "ecs/world.h"
 #include "math/vec.h"

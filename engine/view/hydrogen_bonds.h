@@ -1,4 +1,4 @@
-// Hydrogen bonds, from where the atoms are.
+// Finds hydrogen bonds from the positions of atoms.
 #pragma once
 #include "ecs/world.h"
 #include "scene/choices.h"
@@ -10,8 +10,8 @@ namespace palpa {
 
 struct HydrogenBond {
     std::uint32_t hydrogen = 0, acceptor = 0;  // atoms of the table
-    double length = 0;                         // Å, from one to the other
-    std::uint32_t donor = 0;                   // the atom that has the hydrogen
+    double length = 0;                         // Å, hydrogen to acceptor
+    std::uint32_t donor = 0;                   // the atom bonded to the hydrogen
 };
 
 // D-H...A, where D and A are nitrogen, oxygen or sulphur, A not a nitrogen with four bonds; shorter

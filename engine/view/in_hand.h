@@ -1,4 +1,4 @@
-// Which atoms are shown as those in hands.
+// The atoms that are shown as held.
 #pragma once
 #include "ecs/world.h"
 
@@ -6,10 +6,10 @@
 
 namespace palpa {
 
-// By number: whole molecules, or what of them is held by a spring.
+// One entry per atom: whole molecules, or the atoms held by a spring.
 std::vector<bool> find_held_atoms(const World& world);
 
-// The same, with all of the molecule in the first hand.
+// The same, with the whole molecule of the first hand.
 std::vector<bool> find_in_hand(const World& world);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// What the colours of a whole view mean.
+// The legend of a whole view.
 #pragma once
 #include "ecs/world.h"
 #include "view/atom_colours.h"
@@ -8,9 +8,8 @@
 
 namespace palpa {
 
-// The entries of every colouring that something in the view has: of everything, of molecules that
-// have one of their own, of layers. None twice; in that order. Empty where colours are seen
-// without.
+// The entries of every colouring in use: of everything, of molecules with their own, of layers;
+// each once, in this order. Empty if colours are self-evident.
 std::vector<LegendEntry> find_legend(const World& world, const ViewSettings& settings);
 
 }  // namespace palpa

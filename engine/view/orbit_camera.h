@@ -1,4 +1,4 @@
-// A camera that a person turns about what they look at.
+// A camera that orbits a target.
 #pragma once
 #include "haptics/device.h"
 #include "render/frame_scene.h"
@@ -8,7 +8,7 @@
 
 namespace palpa {
 
-// Looks at `target` from `distance` away; y is up.
+// Looks at `target` from `distance`; y is up.
 struct OrbitCamera {
     glm::vec3 target{0};
     float distance = 10;          // Å
@@ -17,35 +17,35 @@ struct OrbitCamera {
     float vertical_angle = 0.6F;  // rad
 };
 
-// The direction from the target to the eye, and to the right and upwards in the picture.
+// Unit vectors from the target to the eye, and to the right and upwards in the picture.
 glm::vec3 backward(const OrbitCamera& camera);
 glm::vec3 rightward(const OrbitCamera& camera);
 glm::vec3 upward(const OrbitCamera& camera);
 
-// Turns; never over the top.
+// Turns the camera; the elevation stays within ±90°.
 void orbit(OrbitCamera& camera, float azimuth, float elevation);
-// Shifts by pixels of a picture `height` pixels high, so that what is at the target's depth
-// follows.
+// Shifts the camera by pixels of a picture of this height, so that points at the target's depth
+// follow the mouse.
 void pan(OrbitCamera& camera, float right, float down, float height);
-// Å at the depth of a place that a pixel covers, in a picture `height` pixels high.
+// Å per pixel at the depth of a point, in a picture `height` pixels high.
 float angstrom_per_pixel(const OrbitCamera& camera, const glm::vec3& place, float height);
-// Nearer for factors below 1.
+// Changes the distance by a factor; below 1 moves nearer.
 void zoom(OrbitCamera& camera, float factor);
-// The same, while what is seen at a place of the picture stays there, if it is at the target's
-// depth: a place so many pixels to the right of the target and below it.
+// The same while a point at the target's depth stays fixed in the picture: the point this many
+// pixels to the right of the target and below it.
 void zoom_at(OrbitCamera& camera, float factor, float right, float down, float height);
-// On the way from one camera to another, `share` from 0 to 1: turns the short way round, and comes
-// nearer by equal factors in equal shares.
+// Interpolates between two cameras, `share` 0 to 1: by the shorter rotation, with the logarithm of
+// distance changing linearly.
 OrbitCamera between(const OrbitCamera& from, const OrbitCamera& to, float share);
-// A share of the time as a share of the way: slow at both ends.
+// Converts a share of time to a share of the way: slow at both ends.
 float eased(float share);
-// What is seen goes at a hand's rate for a time, as if it were in hand: to the right and up by a
-// height of the picture, or nearer by a factor of e, for every `carried_m` of the hand. It turns
-// with the hand, but never over, and does not roll.
+// Moves the view by the velocity of a hand for a time, as if the hand held what is seen: by one
+// picture height to the right or up, or nearer by a factor of e, for every `carried_m` of the hand.
+// Turns with the hand, with elevation within ±90° and without roll.
 inline constexpr double carried_m = 0.060;
 void carry(OrbitCamera& camera, const HandRate& rate, double dt_s);
-// The part of a picture that is there for shapes, over the picture's height: all of a picture of
-// that aspect, or less where panels cover the rest.
+// The part of a picture available for shapes, relative to the picture's height: the whole of a
+// picture of this aspect, or less if panels cover some.
 struct Room {
     float width, height = 1;
 
@@ -53,14 +53,15 @@ struct Room {
     Room(float width_share, float height_share) : width(width_share), height(height_share) {}
 };
 
-// All shapes, or these, fit into the room with a margin, seen in the direction in which the camera
-// looks. Where there are none, nothing changes.
+// Fits all shapes, or these, into the room with a margin, with unchanged direction. Without shapes
+// nothing changes.
 void frame_all(OrbitCamera& camera, const FrameScene& frame, const Room& room);
 void frame_shapes(OrbitCamera& camera, std::span<const SphereShape> shapes, const Room& room);
-// Looks at one place, from near.
+// Looks at one point from near.
 void focus(OrbitCamera& camera, const glm::vec3& place, float distance);
 
-// With clip planes in front of and behind all shapes, and fog behind the target.
+// The camera of a frame, with clip planes in front of and behind all shapes, and fog behind the
+// target.
 FrameCamera frame_camera(const OrbitCamera& camera, const FrameScene& frame);
 
 }  // namespace palpa

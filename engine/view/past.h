@@ -1,4 +1,4 @@
-// What was before: how molecules stood at the start, and the way of what hands hold since.
+// Marks of the past: the start pose of molecules, and the path of what hands hold.
 #pragma once
 #include "ecs/world.h"
 #include "math/vec.h"
@@ -16,31 +16,30 @@
 
 namespace palpa {
 
-// Of one world, followed from step to step by its clock. After a reset, or where the clock goes
-// back (in another world), everything begins anew.
+// Follows one world from step to step by its clock. After a reset, or if the clock goes back
+// (another world), everything restarts.
 class Past {
 public:
-    // The first look is the start, where marks that want a place of rest have it found. Edits may
-    // add molecules, whose start is when they are first seen; where they take a molecule back, its
-    // way has a gap.
+    // The first call defines the start, and finds the pose at rest if marks need it. The start of
+    // an added molecule is when it is first seen; the path of a removed and restored one has a gap.
     void follow(const World& world, const ViewMarks& marks);
 
-    // What hands hold as it stood at the start, where it has moved by 0.1 Å, and residues of
-    // `pocket`, one an atom, of which a heavy atom has moved by 0.5 Å: pale sticks without
-    // hydrogens on carbon. And a ring about the place of rest of what hands held at the start.
+    // Draws pale sticks, without hydrogens on carbon, at the start pose: of what hands hold if it
+    // has moved by 0.1 Å, and of residues of `pocket` (one entry per atom) with a heavy atom that
+    // has moved by 0.5 Å. Also draws a ring about the pose at rest of what hands held at the start.
     void add_ghost(const World& world, std::span<const ResidueSpan> residues,
                    const std::vector<bool>& pocket, FrameScene& frame,
                    std::vector<ViewLabel>& labels) const;
 
-    // The way of the centre of what each hand holds over the last `trail_s`, which fades into the
-    // background.
+    // Draws the path of the centre of what each hand holds over the last `trail_s`; it fades into
+    // the background.
     void add_trail(double trail_s, FrameScene& frame) const;
 
 private:
     struct Point {
         double time_s;
         Vec3 place;
-        bool is_joined;  // to the one before
+        bool is_joined;  // connected to the previous point
     };
     struct Trail {
         Entity molecule;
@@ -56,13 +55,13 @@ private:
     bool has_begun_ = false;
     double now_s_ = 0;
     std::map<Entity, std::vector<Vec3>> starts_;  // by molecule, Å
-    std::vector<Vec3> rests_;                     // of reference atoms, Å
+    std::vector<Vec3> rests_;                     // reference atoms at rest, Å
     std::map<Entity, Trail> trails_;              // by hand
 };
 
-// Where what a hand of the scene holds is at rest (Å, its reference atom or its end of the spring),
-// in a world just loaded. In space loading has found it; on a line it is sought here, unless that
-// would take more than a tenth of a second. Nothing where there is none.
+// The pose at rest of what a hand holds (Å, its reference atom or the hand's end of its spring) in
+// a newly loaded world. In space it is known from loading; on a line it is computed here, unless
+// that would take more than a tenth of a second. Nothing if there is none.
 std::optional<Vec3> find_resting_place(const World& world, Entity hand);
 
 }  // namespace palpa

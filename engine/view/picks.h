@@ -1,4 +1,4 @@
-// What shapes that are no atoms are picked as. Atoms, and bonds by their first atom, are picked by
+// Pick numbers of shapes other than atoms. Atoms, and bonds by their first atom, are picked by
 // their index.
 #pragma once
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The words on pictures that are made without a window: labels and the legend.
+// Draws labels and the legend on pictures made without a window.
 #pragma once
 #include "render/frame_scene.h"
 #include "render/picture.h"
@@ -18,13 +18,14 @@ struct PictureWords {
     std::vector<LegendEntry> legend;
 };
 
-// Words that found no place: labels whose place is seen, ticks not counted; and the legend.
+// Texts without room: visible labels (ticks not counted), and the legend.
 struct LeftOutWords {
     std::size_t labels = 0;
     bool has_legend = false;
 };
 
-// Where labels may go: in a picture of that size, so many pixels from each other, and not there.
+// The room for labels: the size of the picture, the gap between labels, and the areas to leave
+// free.
 struct LabelRoom {
     std::uint32_t width = 0, height = 0;
     int gap = 0;
@@ -32,20 +33,20 @@ struct LabelRoom {
 };
 
 struct PlacedLabel {
-    std::size_t label = 0;  // which of them
+    std::size_t label = 0;  // index of the label
     PixelBox box;
 };
 struct PlacedLabels {
-    std::vector<PlacedLabel> placed;  // those that were first to choose first
-    std::size_t unplaced = 0;         // as LeftOutWords::labels
+    std::vector<PlacedLabel> placed;  // in the order of placement
+    std::size_t unplaced = 0;         // see LeftOutWords::labels
 };
 
-// Finds room of their `sizes` for labels whose places are seen, beside these: the nearest to the
-// camera chooses first, ticks last. Where none is left a label has no box.
+// Places labels of these `sizes` beside their points, if these are visible: the nearest to the
+// camera first, ticks last. A label without room has no box.
 PlacedLabels place_labels(std::span<const ViewLabel> labels, std::span<const TextSize> sizes,
                           const FrameCamera& camera, LabelRoom room);
 
-// Writes them on a picture of the frame, the legend into the lower left corner.
+// Draws them on a picture of the frame, the legend in the lower left corner.
 LeftOutWords write_words(const PictureWords& words, const FrameScene& frame, TextPainter& painter,
                          Picture& picture);
 

@@ -1,4 +1,4 @@
-// Places of the world as pictures have them.
+// Converts positions of the world to those of pictures.
 #pragma once
 #include "math/vec.h"
 

@@ -1,4 +1,4 @@
-// Helices and strands of the residues of an atom table.
+// The secondary structure of the residues of an atom table.
 #pragma once
 #include "molecule/atoms.h"
 #include "molecule/secondary_structure.h"
@@ -14,17 +14,18 @@
 
 namespace palpa {
 
-// Those residues that have N, CA, C and O (at the end of a chain OT1, as CHARMM has it).
+// The residues with N, CA, C and O (OT1 at the end of a chain, as in CHARMM).
 struct Backbone {
     std::vector<BackboneResidue> residues;
-    std::vector<std::size_t> numbers;  // of each, its index among all residues
+    std::vector<std::size_t> numbers;  // index of each among all residues
 };
 Backbone find_backbone(const AtomTable& atoms, std::span<const ResidueSpan> residues);
 
-// Finds classes anew only when atoms have moved (SecondaryStructureCache).
+// Computes the classes again only when atoms have moved (SecondaryStructureCache).
 class ResidueStructure {
 public:
-    // One a residue; coil where its backbone is not complete. The span lasts until the next call.
+    // One entry per residue; coil if its backbone is not complete. The span is valid until the next
+    // call.
     std::span<const SecondaryStructure> update(const AtomTable& atoms,
                                                std::span<const ResidueSpan> residues);
 
@@ -33,13 +34,13 @@ private:
     std::vector<SecondaryStructure> structure_;
 };
 
-// One entry per atom, from one per residue; coil for atoms of no residue.
+// One entry per atom from one entry per residue; coil for atoms of no residue.
 std::vector<SecondaryStructure> per_atom(const AtomTable& atoms,
                                          std::span<const ResidueSpan> residues,
                                          std::span<const SecondaryStructure> structure);
 
-// Names residues, "ASP 25", or "ASP 25 CG" of one atom; with the segment, "A:ASP 25", where another
-// segment has a residue of that name and number. It refers to the table.
+// Names residues, "ASP 25", or atoms, "ASP 25 CG"; with the segment, "A:ASP 25", if another segment
+// has the same residue name and number. Refers to the table.
 class ResidueNames {
 public:
     ResidueNames(const AtomTable& atoms, std::span<const ResidueSpan> residues);
@@ -49,10 +50,10 @@ private:
     using NameAndNumber = std::pair<std::string_view, std::string_view>;
 
     const AtomTable& atoms_;
-    std::set<NameAndNumber> shared_;  // of several segments
+    std::set<NameAndNumber> shared_;  // names that occur in several segments
 };
 
-// The atom of that name, or `end` of the residue.
+// The atom with this name, or `end` of the residue.
 std::size_t find_atom(const AtomTable& atoms, const ResidueSpan& residue, std::string_view name);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// A smooth curve through places, and which way a ribbon along it is turned.
+// A smooth curve through points, with the orientation of a ribbon along it.
 #pragma once
 #include <cstddef>
 #include <glm/vec3.hpp>
@@ -7,19 +7,19 @@
 
 namespace palpa {
 
-// `v` of length 1, or what else there is where it has none.
+// The unit vector of `v`, or `otherwise` if `v` is zero.
 glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) noexcept;
 
-// Where a cross section is, and its directions, unit vectors at right angles to each other.
+// Position of a cross section and its directions, orthogonal unit vectors.
 struct RibbonFrame {
     glm::vec3 place{0};
     glm::vec3 along{0, 0, 1};
     glm::vec3 aside{1, 0, 0};  // across the ribbon, in its plane
 
-    glm::vec3 up() const noexcept;  // out of its plane
+    glm::vec3 up() const noexcept;  // normal to its plane
 };
 
-// A natural cubic spline, a unit of its parameter from one guide to the next.
+// A natural cubic spline; the parameter rises by 1 from one guide to the next.
 class RibbonPath {
 public:
     // At least two guides, Å. They may coincide.
@@ -32,12 +32,12 @@ public:
     glm::vec3 slope(float u) const noexcept;
     glm::vec3 along(float u) const noexcept;  // unit vector
 
-    // How the ribbon is turned at each guide: `aside` where it is known, zero where it is not. A
-    // ribbon looks the same upside down, so directions are taken with either sign, whichever turns
-    // less. In between it turns as little as it can.
+    // Sets the orientation at each guide: `aside`, or zero if unknown. A ribbon looks the same
+    // upside down, so the sign with the smaller rotation is used. Between known orientations the
+    // ribbon twists as little as possible.
     void turn(std::span<const glm::vec3> aside);
 
-    // As the ribbon is turned; `turn` comes before.
+    // The frame at u; call `turn` first.
     RibbonFrame frame(float u) const noexcept;
 
 private:

@@ -1,4 +1,4 @@
-// A molecule's surface as a frame's shape.
+// Converts a molecule's surface to a shape of a frame.
 #pragma once
 #include "molecule/surface/mesh.h"
 #include "render/frame_scene.h"
@@ -10,12 +10,12 @@
 
 namespace palpa {
 
-// Each vertex in the colour of its nearest atom and picked as that: `colours` and `picks` have an
-// entry for each atom that the surface is made from.
+// Each vertex has the colour and pick of its nearest atom: `colours` and `picks` have one entry per
+// atom of the surface.
 MeshShape shape_by_atom(const SurfaceMesh& mesh, std::span<const glm::vec3> colours,
                         std::span<const std::uint32_t> picks, float opacity = 1);
 
-// Each vertex in the colour of its potential, kT/e (view/colour_scales.h), one for each vertex.
+// Each vertex has the colour of its potential, kT/e (view/colour_scales.h); one value per vertex.
 MeshShape shape_by_potential(const SurfaceMesh& mesh, std::span<const float> potentials,
                              std::span<const std::uint32_t> picks, float opacity = 1);
 

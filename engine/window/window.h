@@ -1,4 +1,4 @@
-// A window on the display: its size, its keys and its mouse, and a surface to draw on.
+// A window with keyboard and mouse input and a surface to draw on.
 #pragma once
 #include <vulkan/vulkan.h>
 #include <array>
@@ -14,7 +14,7 @@ struct GLFWwindow;
 
 namespace palpa {
 
-// No display, or one that cannot show a window: a sentence for the user.
+// Thrown if there is no display or it cannot show a window; a sentence for the user.
 class PlatformError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
@@ -22,7 +22,7 @@ public:
 
 enum class MouseButton { Left, Right, Middle };
 
-// Keys that mean something; all others are passed over.
+// The keys that are used; all others are ignored.
 enum class Key {
     Space,
     Enter,
@@ -76,93 +76,94 @@ enum class Key {
     Count
 };
 
-// The first game pad whose buttons are known. Sticks from -1 to 1, y down.
+// State of the first game pad with known buttons. Sticks from -1 to 1, y down.
 struct PadState {
     double left_x = 0, left_y = 0, right_x = 0, right_y = 0;
     bool right_shoulder = false;
 };
 
-// A key as it was pressed, with the modifiers of that moment.
+// A pressed key with its modifiers.
 struct KeyPress {
     Key key;
     bool control = false, shift = false;
 };
 
-// Where a button went down, in pixels of the picture.
+// A button press, position in pixels of the picture.
 struct MousePress {
     MouseButton button;
     double x = 0, y = 0;
     bool control = false, shift = false;
 };
 
-// The left or the right button went down and up, and the mouse stayed where it was.
+// A click: the left or right button went down and up while the mouse did not move.
 struct MouseClick {
     double x = 0, y = 0;
-    bool control = false, shift = false, alt = false;  // as it went down
-    bool is_second = false;                            // of a double click
+    bool control = false, shift = false, alt = false;  // modifiers at the press
+    bool is_second = false;                            // the second of a double click
     bool is_right = false;                             // the right button
 };
 
-// What came in since the last poll. Mouse places in pixels of the picture, from the upper left.
+// Input since the last poll. Mouse positions in pixels of the picture from the upper left corner.
 struct Input {
     double mouse_x = 0, mouse_y = 0;
     double mouse_dx = 0, mouse_dy = 0;
-    double wheel = 0;             // notches, + away from the user
-    std::array<bool, 3> down{};   // by MouseButton, at this moment
-    bool double_clicked = false;  // the left one, twice at one place
+    double wheel = 0;             // notches, positive away from the user
+    std::array<bool, 3> down{};   // state by MouseButton now
+    bool double_clicked = false;  // left button, twice at one point
     std::array<bool, static_cast<std::size_t>(Key::Count)> held{};
-    std::vector<KeyPress> pressed;               // since the last poll, in their order
+    std::vector<KeyPress> pressed;               // in order
     std::vector<MousePress> clicked;             // the same
-    std::vector<MouseClick> clicks;              // that ended
-    std::vector<std::filesystem::path> dropped;  // files, on the window
+    std::vector<MouseClick> clicks;              // completed clicks
+    std::vector<std::filesystem::path> dropped;  // files dropped on the window
     bool shift = false;                          // at this moment
-    bool resized = false;                        // of the picture
-    bool rescaled = false;  // of the text, since the window went to another display
-    bool focused = true;    // keys are meant for this window
+    bool resized = false;                        // the size of the picture has changed
+    bool rescaled =
+        false;            // the text scale has changed because the window moved to another display
+    bool focused = true;  // the window has the keyboard
     std::optional<PadState> pad;
 
     bool is_held(Key key) const { return held[static_cast<std::size_t>(key)]; }
     bool is_down(MouseButton button) const { return down[static_cast<std::size_t>(button)]; }
 };
 
-// Two clicks are one double click within this time.
+// Longest time between the two clicks of a double click.
 inline constexpr double double_click_s = 0.35;
 
-// One at a time, on the main thread.
+// At most one at a time, on the main thread.
 class Window {
 public:
-    // Throws PlatformError where there is no display.
+    // Throws PlatformError if there is no display.
     Window(const std::string& title, std::uint32_t width, std::uint32_t height);
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
     ~Window();
 
-    // What a surface needs of the Vulkan instance, and the surface, which belongs to the caller.
+    // The Vulkan extensions that the surface needs, and the surface, which the caller owns.
     std::vector<const char*> vulkan_extensions() const;
     VkSurfaceKHR create_surface(VkInstance instance) const;
 
-    // Makes the window larger by the display's scale, as text is, where the display has the room.
+    // Enlarges the window by the display's scale, like text, if the display has room.
     void grow_with_display();
 
-    // Of the picture, in pixels; 0x0 while the window is folded away.
+    // Size of the picture in pixels; 0x0 while the window is minimised.
     VkExtent2D size() const;
 
-    // Takes in what happened.
+    // Processes events.
     const Input& poll();
 
     void set_title(const std::string& title);
 
     bool should_close() const;
-    // The person wants to stay after all.
+    // Cancels a request to close the window.
     void keep_open();
 
-    // How many times larger than usual text and controls are wanted on this display.
+    // Scale of text and controls on this display relative to normal.
     float content_scale() const;
 
-    // While it is captured the cursor is not seen and nothing stops it; it comes back where it was.
+    // A captured cursor is hidden and has no limits; on release it returns to its old position.
     void capture_cursor(bool is_captured);
 
-    // For the overlay library's own listening.
+    // For the overlay library's event handling.
     GLFWwindow* handle() const noexcept { return window_; }
 
 private:
@@ -174,10 +175,10 @@ private:
     GLFWwindow* window_ = nullptr;
     Input input_;
     bool has_mouse_ = false, is_captured_ = false;
-    double cursor_x_ = 0, cursor_y_ = 0;  // of the last event, in the window's own units
+    double cursor_x_ = 0, cursor_y_ = 0;  // at the last event, in the window's own units
     double last_click_s_ = -1, last_click_x_ = 0, last_click_y_ = 0;
-    MouseClick click_;          // that is under way
-    bool is_clicking_ = false;  // it may become one: the mouse has not moved
+    MouseClick click_;          // the click in progress
+    bool is_clicking_ = false;  // the press may become a click: the mouse has not moved
 };
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// The surface of what a rolling probe cannot enter.
+// The solvent-excluded surface as a distance field.
 #pragma once
 #include "molecule/surface/accessible_arcs.h"
 #include "molecule/surface/field.h"
@@ -39,7 +39,7 @@ private:
     double spacing_;  // Å
     double probe_;    // Å
     double largest_radius_ = 0;
-    // By atom, found when first asked for.
+    // Arcs by atom, computed on demand.
     std::vector<std::vector<AccessibleArc>> arcs_;
     std::vector<bool> has_arcs_;
 };

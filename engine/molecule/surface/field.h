@@ -1,4 +1,4 @@
-// What a surface is the zero of.
+// The interface of a field whose zero level is the surface.
 #pragma once
 #include "molecule/ball_grid.h"
 #include "molecule/surface/lattice.h"
@@ -14,13 +14,13 @@ struct SurfacePoint {
     std::uint32_t atom = 0;
 };
 
-// A ball that has moved, or that has come or gone (a place that is not finite).
+// A ball that moved, appeared or disappeared (then one place is not finite).
 struct MovedBall {
     std::uint32_t atom = 0;
     Vec3 from{0, 0, 0}, to{0, 0, 0};  // Å
 };
 
-// A function of space, above 0 inside and below outside, of balls that move.
+// A function of space from moving balls, positive inside and negative outside.
 class SurfaceField {
 public:
     virtual ~SurfaceField() = default;
@@ -28,14 +28,15 @@ public:
     SurfaceField(const SurfaceField&) = delete;
     SurfaceField& operator=(const SurfaceField&) = delete;
 
-    // How far from its centre a ball of this radius has an influence on the surface, Å.
+    // Distance from its centre within which a ball of this radius affects the surface, Å.
     virtual double reach(double radius) const noexcept = 0;
 
-    // The balls as they now stand; `moved` lists those that moved since the last call. The grid is
-    // kept by the caller.
+    // Updates the balls; `moved` lists those that moved since the last call. The caller owns the
+    // grid.
     virtual void move(const BallGrid& grid, std::span<const MovedBall> moved) = 0;
 
-    // At every point of a block. False, with `samples` untouched, where no ball has an influence.
+    // Samples all points of a block. Returns false and leaves `samples` unchanged if no ball
+    // affects it.
     virtual bool sample(const BlockIndex& block, BlockSamples& samples) = 0;
 
     // The surface's point beside a place that is less than a lattice edge away.

@@ -1,4 +1,4 @@
-// A molecule's surface as triangles.
+// A molecular surface as a triangle mesh.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -19,7 +19,7 @@ struct SurfaceMesh {
 // Å^2
 double find_area(const SurfaceMesh& mesh) noexcept;
 
-// What a closed mesh encloses, Å^3; cavities count as outside.
+// The volume of a closed mesh, Å^3; cavities count as outside.
 double find_volume(const SurfaceMesh& mesh) noexcept;
 
 }  // namespace palpa

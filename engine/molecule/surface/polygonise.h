@@ -1,4 +1,4 @@
-// Marching cubes: from numbers at the points of a block to triangles where they change their sign.
+// Marching cubes: triangles from samples at the points of a block.
 #pragma once
 #include "molecule/surface/lattice.h"
 
@@ -9,11 +9,11 @@
 
 namespace palpa {
 
-// Where the sign changes between a point of the block and the next one along an axis.
+// A sign change between a point of the block and the next one along an axis.
 struct LatticeCrossing {
     std::array<int, 3> point{};  // within the block
     int axis = 0;
-    float share = 0;  // of the way to the next point, inside (0, 1)
+    float share = 0;  // position on the edge to the next point, inside (0, 1)
 };
 
 struct LatticeSurface {

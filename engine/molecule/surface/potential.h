@@ -1,4 +1,4 @@
-// The electrostatic potential of atoms' charges at a surface.
+// The electrostatic potential of charges at a surface.
 #pragma once
 #include "core/units.h"
 #include "math/vec.h"

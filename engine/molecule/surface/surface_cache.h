@@ -1,4 +1,4 @@
-// A surface that follows its atoms: what has not moved is not computed again.
+// A surface that follows its atoms and recomputes only changed parts.
 #pragma once
 #include "molecule/surface/field.h"
 #include "molecule/surface/mesh.h"
@@ -22,9 +22,9 @@ enum class SurfaceKind : std::uint8_t {
 
 struct SurfaceSettings {
     SurfaceKind kind = SurfaceKind::Gaussian;
-    double spacing = 1;      // of the lattice, Å
-    double sharpness = 1.5;  // of Gaussians
-    double probe = 1.4;      // radius of the excluded one, Å
+    double spacing = 1;      // lattice spacing, Å
+    double sharpness = 1.5;  // sharpness of Gaussians
+    double probe = 1.4;      // probe radius of the excluded surface, Å
     // An atom counts as moved once it is farther than this from where the surface has it, Å.
     double tolerance = 0;
 };
@@ -37,8 +37,8 @@ struct SurfaceBudget {
 };
 
 struct SurfaceUpdate {
-    std::vector<BlockIndex> changed;  // blocks whose mesh is another one, or gone
-    std::size_t waiting = 0;          // atoms that have moved and whose change is yet to come
+    std::vector<BlockIndex> changed;  // blocks with a changed or removed mesh
+    std::size_t waiting = 0;          // atoms that moved but are not yet updated
 };
 
 // A block's part of the surface. Vertices on the face of two blocks are in both, at the same place.
@@ -85,13 +85,13 @@ private:
     BallGrid grid_;
     std::unique_ptr<SurfaceField> field_;
     std::map<BlockIndex, SurfaceBlock> blocks_;
-    LatticeSurface lattice_;  // of the block being made
+    LatticeSurface lattice_;  // the present block
 };
 
 // All blocks in one mesh, vertices between blocks once.
 SurfaceMesh join_blocks(const SurfaceCache& cache);
 
-// The surface of atoms that stand still.
+// The surface of fixed atoms.
 SurfaceMesh build_surface(std::span<const Vec3> positions, std::span<const double> radii,
                           const SurfaceSettings& settings);
 

@@ -1,4 +1,4 @@
-// Windows' texts of 16 bits, and ours.
+// Converts between Windows' 16-bit texts and UTF-8.
 #pragma once
 #include <string>
 #include <string_view>

@@ -1,16 +1,16 @@
-// Hands move what they hold.
+// Moves what hands hold.
 #pragma once
 #include "ecs/world.h"
 #include "simulation/systems/step_input.h"
 
 namespace palpa {
 
-// Each hand's pose becomes that of what it holds, or of its end of the spring (the paper's eq. 3,
-// or where guarded coupling has put it). A hand that is nowhere moves nothing, nor do the others:
-// the step is not finite.
+// Moves what each hand holds, or its end of the spring, to the hand's pose (eq. 3 of the paper, or
+// the pose set by guarded coupling). If a pose is not finite, no hand moves anything, and the step
+// counts as not finite.
 void follow_hands(World& world, const StepInput& input);
 
-// The hand takes hold where both are: what the handle travelled since the last step moves nothing.
+// The hand grips at the present poses: the handle's travel since the last step moves nothing.
 void take_hold(World& world, Entity hand, const HandPose& pose) noexcept;
 
 }  // namespace palpa

@@ -5,9 +5,9 @@
 
 namespace palpa {
 
-// Puts the frame that is due into the atom table, and what hands hold where it has it. Nothing
-// where nothing is played. It stands still while a spring, or anything else, makes molecules move
-// by themselves, and while edits have left another number of atoms.
+// Writes the due frame to the atom table and moves what hands hold to it. Does nothing without
+// playback. Playback stops while a spring or anything else moves molecules, and while edits have
+// changed the number of atoms.
 void play_trajectory(World& world, const StepInput& input);
 
 }  // namespace palpa

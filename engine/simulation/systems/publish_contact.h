@@ -1,5 +1,5 @@
-// The local contact model of every hand: forces where what it holds stands, and the field around
-// it.
+// Computes the local contact model of every hand: the forces at the present pose of what it holds,
+// and the field around it.
 #pragma once
 #include "ecs/world.h"
 #include "simulation/components.h"
@@ -7,18 +7,17 @@
 
 namespace palpa {
 
-// Also how much of the way from the last model the frozen field predicted.
+// Also measures what part of the change since the last model the frozen field predicted.
 void publish_contact(World& world, const StepInput& input);
 
 // The same for one hand.
 void update_contact(World& world, Entity hand, const HandPose& pose);
 
-// Where things stand; nothing predicted has been confirmed or denied yet.
+// The model at the present positions; without a prediction checked so far.
 LocalContactModel build_local_contact(const World& world, Entity hand, const HandPose& pose);
 
-// The atoms that a servo tick has time for beside those that other hands hold: the nearest to the
-// molecule in the hand.
-// Chosen anew when that has moved by half an Å, and now and then.
+// Selects the atoms that a servo tick has time for, beside those that other hands hold: the nearest
+// to the held molecule. Repeated when it has moved by 0.5 Å, and now and then.
 void update_near(World& world, Entity hand);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// Mobile joints and bases go towards rest on CHARMM forces.
+// Relaxes mobile joints and bases on CHARMM forces.
 #pragma once
 #include "ecs/world.h"
 #include "simulation/resources.h"
@@ -8,13 +8,13 @@
 
 namespace palpa {
 
-// As many steps as the solver says, of the joints and bases that are active.
+// Makes the solver's number of steps with the active joints and bases.
 void relax(World& world, const StepInput& input);
 
-// The same for measurements outside of a step.
+// The same, for measurements outside of a step.
 RelaxStepReport relax_mobile(World& world, const StepInput& input);
 
-// Where mechanics and springs are: what a step that fails goes back to.
+// Coordinates of mechanics and springs, which a failed step returns to.
 struct MobileCoordinates {
     std::vector<double> angles;
     std::vector<Quat> turns;
@@ -23,7 +23,7 @@ struct MobileCoordinates {
 };
 
 MobileCoordinates save_mobile(const World& world);
-// Positions and forces too.
+// Restores positions and forces as well.
 void restore_mobile(const MobileCoordinates& saved, World& world);
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-// What a step is given, of each hand in the order of their devices; hands beyond these stand still.
+// Input of a step, for each hand in the order of their devices; hands without input stand still.
 #pragma once
 #include "haptics/exchange.h"
 
@@ -8,15 +8,15 @@
 
 namespace palpa {
 
-// `felt`: the contact model that the hand feels at this moment; its force decides how far the
-// molecule goes for the handle's travel, dx_m = dx_h / A_d(F_m), the paper's incremental coupling
-// with its one-step delay. A pose that gives the molecule's place puts it there.
+// `felt`: the contact model in force at the hand; its force sets how far the molecule moves for the
+// handle's travel: dx_m = dx_h / A_d(F_m), the paper's incremental coupling with its delay of one
+// step. A pose with the molecule's position moves the molecule there.
 struct StepInput {
     std::span<const HandPose> hands;
     std::span<const ContactModel> felt;
-    std::optional<double> took_us = {};  // wall time of this step, where it is played again
-    // Where a thread of its own makes renewals of second order: whether this step begins with the
-    // pending one; and waits for that thread.
+    std::optional<double> took_us = {};  // wall time of this step when a journal is played
+    // With second-order renewals in another thread: whether this step adopts the pending one,
+    // waiting for it if needed.
     bool adopts_renewal = false;
     std::function<void()> await_renewal = {};
 };
