@@ -31,7 +31,7 @@ def sample(wall_s, memory_MB, files=5, part=1):
 
 
 def second(servo_s, energy_J, step_us=10.0, overruns=0, held_back=0.0):
-    return {"servo_s": servo_s, "step_median_us": step_us, "step_p99_us": 2 * step_us, "overruns": overruns,
+    return {"servo_s": servo_s, "steps": 100, "step_median_us": step_us, "step_p99_us": 2 * step_us, "overruns": overruns,
             "held_back_share": held_back, "hand_energy_J": energy_J, "potential_kcal_per_mol": -0.5 * servo_s}
 
 
