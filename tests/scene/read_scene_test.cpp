@@ -179,8 +179,6 @@ TEST_CASE("a value of the wrong type is told with what it is and should be", "[s
         {"[hand]\ngrip = 2", 18, 8, "'hand.grip' is 2; expected one of none, light"},
         {"[hand]\ngrip = \"frim\"", 18, 8, "expected one of none, light, slack, medium, firm"},
         {"[hand]\ngrip = \"fir\"", 18, 8, "did you mean 'firm'?"},
-        {"[statics]\nweights = \"near-hand\"", 18, 11,
-         "'statics.weights': near-hand is now hand-proximity"},
         {"[coupling]\nmode = 6", 18, 8, "'coupling.mode' is 6; expected one of 1, 2, 3, 4, 5"},
         {"[coupling]\nmode = 2.0", 18, 8, "expected one of 1, 2, 3, 4, 5"},
         {"[hand]\npath = 3", 18, 8, "expected a list of points"},

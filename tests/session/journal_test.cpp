@@ -33,7 +33,7 @@ const std::string hand_line =
     "\n";
 
 Journal parse(const std::string& lines) {
-    return parse_journal(fmt::format("{}\n{}{}", journal_mark, hand_line, lines), "journal.txt");
+    return parse_journal(fmt::format("{}2.0\n{}{}", journal_mark, hand_line, lines), "journal.txt");
 }
 
 std::string error_of(const std::string& lines) {
@@ -162,6 +162,38 @@ TEST_CASE("a journal has the forces of clients, within their bounds", "[session]
     CHECK_THAT(error_of("c 1 {\"pull\":[],\"of\":1e99}\n"), Contains("'of' is"));
 }
 
+TEST_CASE("a journal states its version; of the one before edits have old names",
+          "[session][journal][format]") {
+    const std::string edit =
+        "c 1 {\"edit\":\"[[edits]]\\nat_s = 0\\nappearance = { molecule = \\\"a\\\", colouring = "
+        "\\\"element\\\" }\\n\"}\n";
+    const auto read = [&](const std::string& version, const std::string& lines) {
+        return parse_journal(fmt::format("{}{}\n{}{}", journal_mark, version, hand_line, lines),
+                             "journal.txt");
+    };
+    const auto error_of_version = [&](const std::string& version, const std::string& lines) {
+        return test::load_error_of([&] { (void)read(version, lines); });
+    };
+    CHECK(JournalWriter(std::span(&omni, 1)).take().starts_with("# Palpa journal 2.0\n"));
+    for (const char* const before : {"1", "1.0"}) {
+        const Journal journal = read(before, edit);
+        const auto& look = std::get<AppearanceEdit>(command_of<EditDescription>(journal, 0).action);
+        CHECK(look.colouring == Colouring::Element);
+        CHECK(journal.version == FileVersion{1, 0});
+        CHECK(journal.notes.empty());
+    }
+    CHECK_THAT(error_of_version("2.0", edit), Contains("is now 'edits[1].appearance.colour'"));
+    const Journal newer = read("2.7", "p 1\n");
+    REQUIRE(newer.notes.size() == 1);
+    CHECK_THAT(newer.notes[0], Contains("journal format 2.7 is newer than 2.0"));
+    CHECK_THAT(error_of_version("2.7", "q 1\n"),
+               Contains("'q' is no kind of line") && Contains("a newer Palpa, since the journal"));
+    CHECK_THAT(error_of_version("3.0", "p 1\n"),
+               Contains("journal.txt:1: journal format 3.0 is newer than this program"));
+    CHECK_THAT(error_of_version("two", "p 1\n"),
+               Contains("is no journal; expected # Palpa journal 2.0"));
+}
+
 TEST_CASE("what a journal cannot hold is refused with its line", "[session][journal]") {
     const auto whole = [](const std::string& text) {
         return test::load_error_of([&] { (void)parse_journal(text, "journal.txt"); });
@@ -169,7 +201,7 @@ TEST_CASE("what a journal cannot hold is refused with its line", "[session][jour
     CHECK_THAT(whole(""), Contains("journal.txt") && Contains("has no complete line for a hand"));
     CHECK_THAT(whole("time_s,handle_x_m\n"),
                Contains("journal.txt:1") && Contains("is not a journal"));
-    CHECK_THAT(whole(fmt::format("{}\nt 0 -\n", journal_mark)),
+    CHECK_THAT(whole(fmt::format("{}2.0\nt 0 -\n", journal_mark)),
                Contains("has no hand before the first event"));
     CHECK_THAT(error_of("q 1\n"),
                Contains("journal.txt:3") && Contains("'q' is not a kind of line"));

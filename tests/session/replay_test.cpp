@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -125,8 +126,101 @@ TEST_CASE("rows that no tick has are surplus", "[session][replay]") {
 
 TEST_CASE("a trace without a line or with other columns is refused", "[session][replay]") {
     CHECK_THROWS_WITH(check_of("time_s", {}, 1, 1), Contains("trace.csv:1: has no complete line"));
-    CHECK_THROWS_WITH(check_of("time_s,other\n", {}, 1, 1),
-                      Contains("trace.csv:1: has a column 'other'"));
+    CHECK_THROWS_WITH(check_of("time_s\n", {}, 1, 1),
+                      Contains("trace.csv:1: lacks the column 'handle_x_m'"));
+    CHECK_THROWS_WITH(check_of(trace_header() + ",other\n", {}, 1, 1),
+                      Contains("trace.csv:1: has a column 'other', which no recording of format"));
+}
+
+namespace {
+
+// Without the columns whose names contain the words.
+std::string without_columns(const std::string& trace, const std::vector<std::string>& words) {
+    std::istringstream lines(trace);
+    std::string result;
+    std::vector<bool> keeps;
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream values(line);
+        const bool is_header = keeps.empty();
+        std::string kept;
+        std::size_t column = 0;
+        for (std::string value; std::getline(values, value, ','); ++column) {
+            if (is_header)
+                keeps.push_back(std::ranges::none_of(words, [&](const std::string& word) {
+                    return value.find(word) != value.npos;
+                }));
+            if (keeps.at(column)) kept += (kept.empty() ? "" : ",") + value;
+        }
+        result += kept + "\n";
+    }
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("columns that an older recording lacks are not compared, all others are",
+          "[session][replay][format]") {
+    const std::vector<ServoTick> recorded = some_ticks(6);
+    std::vector<ServoTick> played = recorded;
+    played[2].contact.torque_newton_metre.x() = 1;  // which the recording lacks
+    played[4].sent_newton.y() = -0.45;
+    const std::string trace = without_columns(trace_of(recorded, 1), {"torque_", "_turn_"});
+    REQUIRE(trace.find("torque") == std::string::npos);
+
+    const TraceCheck check = check_of(trace, played, 6, 1);
+
+    CHECK(check.compared() == 6);
+    CHECK(check.different() == 1);
+    REQUIRE(check.first());
+    CHECK(check.first()->row == 5);
+    CHECK(check.first()->column == "device_force_y_N");
+    CHECK(check.first()->recorded == "-0.2");
+    REQUIRE(check.notes().size() == 1);
+    CHECK_THAT(check.notes()[0],
+               Contains("lacks them: torque_x_nN_angstrom") && Contains("molecule_turn_z_rad"));
+}
+
+TEST_CASE("a row of an older recording with a column more is reported",
+          "[session][replay][format]") {
+    const std::vector<ServoTick> ticks = some_ticks(2);
+    std::string trace = without_columns(trace_of(ticks, 1), {"torque_"});
+    trace.insert(trace.size() - 1, ",1");
+
+    const TraceCheck check = check_of(trace, ticks, 2, 1);
+
+    CHECK(check.different() == 1);
+    REQUIRE(check.first());
+    CHECK(check.first()->column == "number of columns");
+}
+
+TEST_CASE("of a newer minor version unknown columns are left out; a newer major one is refused",
+          "[session][replay][format]") {
+    const std::vector<ServoTick> ticks = some_ticks(3);
+    std::string trace = trace_header() + ",heat_K\n";
+    for (const ServoTick& tick : ticks) {
+        std::string row = trace_row(tick);
+        trace += row.insert(row.size() - 1, ",300");
+    }
+    const test::TemporaryFolder folder;
+    folder.add_file("trace.csv", trace);
+    const auto state = [&](const std::string& version) {
+        folder.add_file("session.toml",
+                        "# A recorded Palpa session\n# Recording format " + version + "\n");
+    };
+
+    state("2.99");
+    TraceCheck check(folder.path(), 3, 1);
+    for (const ServoTick& tick : ticks) check.add(tick);
+
+    CHECK(read_recording_version(folder.path()) == FileVersion{2, 99});
+    CHECK(check.compared() == 3);
+    CHECK(check.different() == 0);
+    REQUIRE(check.notes().size() == 1);
+    CHECK_THAT(check.notes()[0], Contains("does not know them: heat_K"));
+    state("3.0");
+    CHECK_THROWS_WITH(
+        read_recorded_scene(folder.path()),
+        Contains("recording format 3.0 is newer than this program") && Contains("a newer Palpa"));
 }
 
 TEST_CASE("a trace of two hands is held against the ticks of both", "[session][replay]") {
