@@ -72,7 +72,7 @@ WakeUps measure_wake_ups(int ticks, bool asks_for_real_time) {
             found.is_locked = ask_for_locked_memory();
         }
         Clock::time_point next = Clock::now() + tick;
-        for (int i = 0; i < ticks; ++i) {
+        while (found.late_us.size() + found.missed < static_cast<std::size_t>(ticks)) {
             wait_awake_until(next);
             const Clock::time_point now = Clock::now();
             found.late_us.push_back(std::chrono::duration<double, std::micro>(now - next).count());

@@ -50,7 +50,8 @@ struct WakeUps {
     std::uint64_t missed = 0;                      // ticks that were skipped meanwhile, beside
 };
 
-// A tick a millisecond, for that many; with ordinary priority, or what a session asks for.
+// A tick a millisecond, for that many with those missed; with ordinary priority, or what a session
+// asks for.
 WakeUps measure_wake_ups(int ticks, bool asks_for_real_time);
 
 // A histogram: classes of a factor of two, from below 1 us on, and how many ticks each has.

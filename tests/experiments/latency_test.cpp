@@ -24,7 +24,8 @@ TEST_CASE("no tick begins early, and each is counted, whatever the priority",
 
     const WakeUps found = measure_wake_ups(30, asks);
 
-    REQUIRE(found.late_us.size() == 30);
+    CHECK(found.late_us.size() + found.missed >= 30);
+    REQUIRE(found.late_us.size() <= 30);
     CHECK(std::ranges::all_of(found.late_us, [](double late) { return late >= 0; }));
     CHECK((asks || !found.is_real_time));
 }

@@ -22,8 +22,8 @@ class WakeUp(unittest.TestCase):
         rows = json.loads(result.stdout)["wake_ups"]
         self.assertEqual([row["priority"] for row in rows], ["real-time", "ordinary"])
         for row in rows:
-            self.assertEqual(row["ticks"], 50)
-            self.assertEqual(sum(each["ticks"] for each in row["classes"]), 50)
+            self.assertTrue(0 < row["ticks"] <= 50 <= row["ticks"] + row["missed"], row)
+            self.assertEqual(sum(each["ticks"] for each in row["classes"]), row["ticks"])
             self.assertTrue(0 <= row["median_us"] <= row["p99_us"] <= row["p999_us"] <= row["most_us"])
             last = row["classes"][-1]
             self.assertTrue(last["below_us"] / 2 <= row["most_us"] < last["below_us"] or last["below_us"] == 1)
