@@ -263,8 +263,8 @@ TEST_CASE("residues that a force field lacks are listed by kind with what to do"
     REQUIRE(named.unknown.size() == 2);
     CHECK(named.unknown[1].meaning == "beta-D-mannose");
     CHECK_THAT(advise(named.unknown[1], AdviceFor::CommandLine),
-               StartsWith("add top_all36_carb.rtf, par_all36_carb.prm and ") &&
-                   EndsWith(" (--toppar), leave it out (--without BMA) or approximate it "
+               Catch::StartsWith("add top_all36_carb.rtf, par_all36_carb.prm and ") &&
+                   Catch::EndsWith(" (--toppar), leave it out (--without BMA) or approximate it "
                             "(--approximate-ligands)"));
     CHECK(named.unknown[0].meaning == "AMP-PNP, an analogue of ATP");
     CHECK(named.unknown[0].where == std::vector<std::string>{"A:2"});
