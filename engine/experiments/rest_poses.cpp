@@ -51,7 +51,7 @@ public:
     }
 
     RestPoses take() {
-        if (place_.line == 0) fail("is an empty line", std::string(rest_poses_mark));
+        if (place_.line == 0) fail("is empty", std::string(rest_poses_mark));
         if (place_.line == 1) fail("ends before the line 'scene'", "scene and five numbers");
         if (poses_.poses.empty()) fail("has no poses", "one or more");
         finish_pose();

@@ -365,7 +365,7 @@ TEST_CASE("a value that does not parse is told with its line", "[charmm][force_f
         {"MASS x OT 15.9994 O\n", "1", "'X' is not a number"},
         {"MASS -1 OT nan O\n", "1", "'NAN' is not a number"},
         {"MASS -1 OT -1.0 O\n", "1", "expected 0 or more"},
-        {"MASS -1\n", "1", "no type here; expected: MASS number type mass [element]"},
+        {"MASS -1\n", "1", "the type is missing; expected: MASS number type mass [element]"},
         {"MASS -1 OT\n", "1", "no mass here"},
         {"RESI\n", "1", "no name here; expected: RESI name charge [NOANG]"},
         {"RESI TIP3\n", "1", "no charge here"},
@@ -494,7 +494,7 @@ TEST_CASE("an atom line needs a residue before it", "[charmm][force_field]") {
 
 TEST_CASE("an atom stands once in a residue", "[charmm][force_field]") {
     CHECK(error_of("RESI A 0.0\nATOM O OT 0.1\nATOM O OT 0.1\n") ==
-          "a.str:3: atom 'O' again, first in a.str:2");
+          "a.str:3: atom 'O' is repeated, first in a.str:2");
 }
 
 TEST_CASE("what is given again replaces the earlier and is noted with both places",
@@ -593,7 +593,7 @@ TEST_CASE("force constants below 0 are taken and noted", "[charmm][force_field]"
           "a.str:4: a force constant of -40 of Urey-Bradley angle P ON2 P");
     CHECK(describe_notes(force_field.notes).size() == 1);
     CHECK_THAT(describe_notes(force_field.notes)[0],
-               StartsWith("3 force constants below 0, taken as they are: a.str:2: "));
+               StartsWith("3 negative force constants, used as they are: a.str:2: "));
 }
 
 TEST_CASE("words behind an ATOM line's charge are passed over and noted", "[charmm][force_field]") {

@@ -264,7 +264,7 @@ TEST_CASE("an omega that let go gets its force back after a pause", "[devices][f
     DeviceReading reading = omega.tick(Vec3(0.5, 0, 0), ForceDimension::status_ticks);
     CHECK(reading.valid);
     CHECK(reading.trouble == DeviceTrouble::ForceRefused);
-    CHECK_THAT(std::string(omega.device().status()), Catch::Contains("let go"));
+    CHECK_THAT(std::string(omega.device().status()), Catch::Contains("switched the force off"));
     int without = 0;
     for (; omega.motors() == Vec3::Zero() && without < 5000; ++without)
         reading = omega.tick(Vec3(0.5, 0, 0));

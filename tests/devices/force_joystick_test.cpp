@@ -254,7 +254,7 @@ TEST_CASE("a stick that lacks what a constant force takes says what", "[devices]
 
     const DeviceCheck plain = last_check({0x044f, 0xb108, 1, 4, false, "a plain stick"});
     CHECK(plain.layer == "bus");
-    CHECK_THAT(plain.found, Catch::Contains("no force-feedback joystick among 1 inputs") &&
+    CHECK_THAT(plain.found, Catch::Contains("no force-feedback joystick among the 1 input devices") &&
                                 Catch::Contains("044f:b108 is a joystick without a usable force: "
                                                 "its report descriptor has no X axis"));
 }
@@ -280,7 +280,7 @@ TEST_CASE("a stick with room for one effect plays it, and one without any is not
         answers = {test::loaded_block(0, 2)};
         const DeviceCheck full = last_check(hid);
         CHECK(full.layer == "effects");
-        CHECK_THAT(full.found, Catch::Contains("no room"));
+        CHECK_THAT(full.found, Catch::Contains("no memory"));
     }
     SECTION("busy at first") {
         answers = {test::loaded_block(0, 0), test::loaded_block(0, 0), test::loaded_block(7, 1),

@@ -86,7 +86,7 @@ TEST_CASE("without a device the checks end at the bus, and name the mice that ar
     CHECK(opened.checks[0].outcome == CheckOutcome::Ok);
     CHECK(opened.checks[1].layer == "bus");
     CHECK(opened.checks[1].outcome == CheckOutcome::Failed);
-    CHECK_THAT(opened.checks[1].found, Catch::Contains("no SpaceMouse among 1 inputs") &&
+    CHECK_THAT(opened.checks[1].found, Catch::Contains("no SpaceMouse among the 1 input devices") &&
                                            Catch::Contains("256f:c650 is a mouse or a keyboard"));
     CHECK_FALSE(opened.checks[1].remedy.empty());
 }

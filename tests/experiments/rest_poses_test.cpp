@@ -107,7 +107,7 @@ TEST_CASE("what is wrong with a file of poses is said with its line", "[experime
         {"pose\nrest", "pose 1\nrest", 3, "1 words follow 'pose'; expected nothing"},
         {"pose\nrest", "rest", 3, "stands before any line 'pose'"},
         {"pose\nrest all -1.5 1 2 3", "pose", 4, "stands before any line 'rest'"},
-        {"rest all", "rest cutoff", 4, "is of 'cutoff'; expected 'all'"},
+        {"rest all", "rest cutoff", 4, "names 'cutoff'; expected 'all'"},
         {"rest all -1.5", "rest all x", 4, "'x' is not a number; expected a number of 1e9 at most"},
         {"rest all -1.5", "rest all nan", 4, "'nan' is not a number"},
         {"rest all -1.5", "rest all 1e10", 4, "'1e10' is not a number"},

@@ -189,7 +189,7 @@ TEST_CASE("a broken REMARK 350 is refused with its line", "[formats][assembly]")
     CHECK_THAT(pdb_error("REMARK 350 APPLY THE FOLLOWING TO CHAINS: A,", "REMARK 350"),
                Contains("w.pdb:7: AND CHAINS without APPLY"));
     CHECK_THAT(pdb_error("BIOMOLECULE: 2", "BIOMOLECULE: 1"),
-               Contains("w.pdb:18: biomolecule 1 again"));
+               Contains("w.pdb:18: biomolecule 1 is repeated"));
 }
 
 TEST_CASE("broken assemblies of an mmCIF file are refused with their lines",

@@ -169,19 +169,19 @@ TEST_CASE("a number that does not parse is told with line and column", "[formats
 
 TEST_CASE("a field that is blank or cut off is told with line and column", "[formats][crd]") {
     CHECK_THAT(error_of(replaced(normal, "TIP3 H1 ", "     H1 ")),
-               StartsWith("w.crd:5:12: no residue name"));
+               StartsWith("w.crd:5:12: the residue name is missing"));
     CHECK_THAT(error_of(replaced(normal, "TIP3 H1 ", "TIP3    ")),
-               StartsWith("w.crd:5:17: no atom name"));
+               StartsWith("w.crd:5:17: the atom name is missing"));
     CHECK_THAT(
         error_of(replaced(normal, "WATA 1      0.00000\n    3", "     1      0.00000\n    3")),
-        StartsWith("w.crd:5:52: no segment name"));
+        StartsWith("w.crd:5:52: the segment name is missing"));
     CHECK_THAT(error_of(replaced(normal, "WATA 1      0.00000\n    3", "WATA\n    3")),
                StartsWith("w.crd:5:57: the residue number is missing"));
     CHECK_THAT(
         error_of(replaced(normal, "  -2.50000   0.00000 WATA", "  -2.50000            WATA")),
-        StartsWith("w.crd:5:41: no coordinate"));
+        StartsWith("w.crd:5:41: the coordinate is missing"));
     CHECK_THAT(error_of(replaced(normal, "   0.76000  -1.57337   0.00000", std::string(30, ' '))),
-               StartsWith("w.crd:6:21: no coordinate"));
+               StartsWith("w.crd:6:21: the coordinate is missing"));
     CHECK_THAT(error_of("    1\n\n"), StartsWith("w.crd:2:"));
 }
 
@@ -189,7 +189,7 @@ TEST_CASE("missing and surplus atoms are told", "[formats][crd]") {
     CHECK(error_of(replaced(normal, "    4\n", "    5\n")) ==
           "w.crd:7: ends after 4 of the 5 atoms announced on line 3");
     CHECK_THAT(error_of(normal.substr(0, normal.find("-1.57337"))),
-               StartsWith("w.crd:6:52: no segment name here; the file ends here after 2 of the 4 "
+               StartsWith("w.crd:6:52: the segment name is missing; the file ends here after 2 of the 4 "
                           "atoms announced on line 3"));
     CHECK_THAT(error_of(replaced(normal, "    4\n", "    3\n")),
                StartsWith("w.crd:7: ") && Contains("3 atoms"));

@@ -346,7 +346,7 @@ TEST_CASE("what is wrong with a DCD file is reported", "[formats][dcd]") {
     hand.control[9] = 1;
     hand.moving = {3, 1};
     CHECK_THAT(error_of_bytes(hand.head() + frames),
-               Contains("atom 1") && Contains("behind atom 3"));
+               Contains("atom 1") && Contains("follows atom 3"));
     hand.moving = {1, 4};
     CHECK_THAT(error_of_bytes(hand.head() + frames), Contains("atom 4"));
     hand = {};
@@ -389,13 +389,13 @@ TEST_CASE("what cannot be written to a DCD file is told", "[formats][dcd]") {
     turned(1, 0) = 0.5;
     auto positions = first_positions;
 
-    CHECK_THAT(load_error_of([&] { DcdWriter(path, 3, {}); }), Contains("is there already"));
+    CHECK_THAT(load_error_of([&] { DcdWriter(path, 3, {}); }), Contains("already exists"));
     CHECK_THAT(load_error_of([&] { DcdWriter(folder.path() / "no" / "w.dcd", 3, {}); }),
                Contains("cannot be written"));
     CHECK_THAT(load_error_of([&] { DcdWriter(folder.path() / "z.dcd", 0, {}); }),
                Contains("0 atoms"));
     CHECK_THAT(load_error_of([&] { writer.add_frame(positions, box); }),
-               Contains("frame 1: a box; expected none"));
+               Contains("frame 1: the frame has a box; expected none"));
     CHECK_THAT(load_error_of([&] { boxed.add_frame(positions); }), Contains("no box"));
     CHECK_THAT(load_error_of([&] { boxed.add_frame(positions, turned); }),
                Contains("a DCD file cannot hold this box"));

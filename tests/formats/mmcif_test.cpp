@@ -168,7 +168,7 @@ TEST_CASE("what is wrong in an mmCIF file is told with its line and column", "[f
          "w.cif:12: the column _atom_site.Cartn_y is missing; expected a coordinate within ±100000 "
          "Å"},
         {"_atom_site.Cartn_y\n", "_atom_site.Cartn_X\n",
-         "w.cif:23:1: column _atom_site.Cartn_X again"},
+         "w.cif:23:1: column _atom_site.Cartn_X is repeated"},
         {" XX ? 2\n", " XX ?\n", "w.cif:39: a row of _atom_site ends after 20 of 21 values"},
         {"data_HAND", "", "w.cif:3:1: no CIF: expected block header (data_)"},
         {"\n;\n", "\n", "w.cif:40:1: no CIF: unterminated text field"},

@@ -209,7 +209,7 @@ TEST_CASE("what is wrong in a PDB file is told with line, columns and what would
         {"A  27      11", "A          11", "w.pdb:3:23: '' in columns 23 to 26 is not a residue"},
         {"A  27      11", "A  27?     11", "w.pdb:3:27: '?' in column 27 is not an insertion code"},
         {"  CA BALA", "  CA AGLY",
-         "w.pdb:5: atom chain A GLY 27 CA (location A) again, first on line 4"},
+         "w.pdb:5: atom chain A GLY 27 CA (location A) is repeated, first on line 4"},
         {"ATOM      1", "ATQM      1",
          "w.pdb:3: 'ATQM' in columns 1 to 6 is not a record; did you "
          "mean 'ATOM'?"},
@@ -233,7 +233,7 @@ TEST_CASE("of atoms that a PDB file repeats the first are taken", "[formats][pdb
 
     std::string many;
     for (int i = 0; i < 60; ++i) many += atom_line("1", "7", "1.000");
-    CHECK_THAT(pdb_error_of(many), StartsWith("w.pdb:52: atom chain A ALA 7 N again"));
+    CHECK_THAT(pdb_error_of(many), StartsWith("w.pdb:52: atom chain A ALA 7 N is repeated"));
 }
 
 // Columns by the format's description 3.3; the third is to a copy by symmetry.

@@ -190,7 +190,7 @@ TEST_CASE("what is wrong in a PSF file is told with its line", "[formats][psf]")
     const auto row = GENERATE(values<Row>({
         {"PSF CMAP", "psf CMAP", "w.psf:1: is not a PSF file"},
         {"CHEQ", "DRUDE", "w.psf:1: the PSF format 'DRUDE' is not supported"},
-        {"5 !NATOM", "0 !NATOM", "w.psf:6: no atoms"},
+        {"5 !NATOM", "0 !NATOM", "w.psf:6: the file has no atoms"},
         {"5 !NATOM", "6 !NATOM", "w.psf:12: ends after 5 of 6 atoms"},
         {"5 !NATOM", "4 !NATOM", "w.psf:11: '5 SOLV 2A"},
         {"5 !NATOM", "-5 !NATOM", "w.psf:6: '-5' is not a count"},

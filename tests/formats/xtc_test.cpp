@@ -321,7 +321,7 @@ TEST_CASE("what is wrong with an XTC file is reported with its frame", "[formats
                Contains("frame 1: has 3 atoms and coordinates of 2"));
     CHECK_THAT(open_error(plain + hand_packed_frame().text),
                Contains("frame 2: has 10 atoms; expected 2"));
-    CHECK_THAT(open_error(with(hand_packed_frame(), 88, 2)), Contains("no room"));
+    CHECK_THAT(open_error(with(hand_packed_frame(), 88, 2)), Contains("has 10 atoms in 2 bytes"));
     CHECK_THAT(read_error(with(hand_packed_frame(), 84, 8)),
                Contains("frame 1: differences of 8 bits"));
     CHECK_THAT(read_error(with(hand_packed_frame(), 56, 0)),
@@ -342,11 +342,11 @@ TEST_CASE("what cannot be written to an XTC file is reported", "[formats][xtc]")
     XtcWriter writer(path, 10, 1e6F);
     std::vector<Vec3> positions(10, Vec3::Zero());
 
-    CHECK_THAT(load_error_of([&] { XtcWriter(path, 10); }), Contains("is there already"));
+    CHECK_THAT(load_error_of([&] { XtcWriter(path, 10); }), Contains("already exists"));
     CHECK_THAT(load_error_of([&] { XtcWriter(folder.path() / "x.xtc", 0); }),
                Contains("0 atoms do not fit"));
     CHECK_THAT(load_error_of([&] { XtcWriter(folder.path() / "y.xtc", 1, 0.5F); }),
-               Contains("the precision 0.5"));
+               Contains("the precision is 0.5"));
     CHECK_THAT(load_error_of([&] { writer.add_frame(std::vector<Vec3>(9, Vec3::Zero()), 0, 0); }),
                Contains("frame 1: 9 atoms; expected 10"));
     positions[3].y() = 30000;

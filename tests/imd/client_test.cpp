@@ -306,7 +306,7 @@ TEST_CASE("an engine that says what is no IMD is left with a sentence", "[imd][c
         Session session;
         session.accept();
         session.engine.send(test::handshake(native, 5));
-        session.expect_lost("is left: a handshake of version 5 came, expected 2 or 3");
+        session.expect_lost("was disconnected: a handshake of version 5 came, expected 2 or 3");
         session.engine.read();
         CHECK(session.engine.received.empty());
     }

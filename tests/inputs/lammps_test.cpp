@@ -60,7 +60,7 @@ TEST_CASE("what LAMMPS lacks is refused", "[inputs][lammps]") {
                Contains("expected whole degrees"));
     system = test::four_in_a_row();
     system.topology.impropers = {{0, 1, 2, 3, 10, 0.6}};
-    CHECK_THAT(load_error_of([&] { (void)format_lammps(system, {}); }), Contains("0 and 180"));
+    CHECK_THAT(load_error_of([&] { (void)format_lammps(system, {}); }), Contains("expected 0 or 180"));
     system = test::four_in_a_row();
     CmapMap map;
     map.size = 12;
@@ -69,5 +69,5 @@ TEST_CASE("what LAMMPS lacks is refused", "[inputs][lammps]") {
     system.topology.cmap_terms = {{{0, 1, 2, 3}, {1, 2, 3, 0}, 0}};
     CHECK_THAT(load_error_of([&] { (void)format_lammps(system, {}); }), Contains("24 x 24"));
     system.topology.cmap_terms = {{{0, 1, 2, 3}, {0, 1, 2, 3}, 0}};
-    CHECK_THAT(load_error_of([&] { (void)format_lammps(system, {}); }), Contains("follow"));
+    CHECK_THAT(load_error_of([&] { (void)format_lammps(system, {}); }), Contains("do not overlap"));
 }

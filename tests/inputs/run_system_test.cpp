@@ -42,7 +42,7 @@ TEST_CASE("what no engine can run is refused", "[inputs]") {
     CHECK_THAT(load_error_of([&] { (void)in_run_order(system); }), Contains("implicit water"));
     system = test::four_in_a_row();
     system.positions[2].y() = std::numeric_limits<double>::quiet_NaN();
-    CHECK_THAT(load_error_of([&] { (void)in_run_order(system); }), Contains("has no place"));
+    CHECK_THAT(load_error_of([&] { (void)in_run_order(system); }), Contains("has no coordinates"));
     system = test::four_in_a_row();
     system.box = Vec3(10, 0, 10);
     CHECK_THAT(load_error_of([&] { (void)in_run_order(system); }), Contains("not positive"));
@@ -65,5 +65,5 @@ TEST_CASE("a box that does not fit its atoms is warned of", "[inputs]") {
     system.box.reset();
     system.positions[1] = system.positions[0];
     REQUIRE(list_warnings(system).size() == 1);
-    CHECK_THAT(list_warnings(system)[0], Contains("on each other"));
+    CHECK_THAT(list_warnings(system)[0], Contains("atoms overlap"));
 }

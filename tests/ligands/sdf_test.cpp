@@ -116,7 +116,7 @@ TEST_CASE("what is wrong in a ligand's file is named with its line", "[ligands][
     CHECK(message_of_sdf(replaced(acetate_v2000, "  2  4  1", "  2  9  1")) ==
           "a.sdf:11: a bond of atoms 2 and 9; expected two different atoms from 1 to 4");
     CHECK(message_of_sdf(replaced(acetate_v2000, "  2  4  1", "  2  3  1")) ==
-          "a.sdf:11: the bond of atoms 2 and 3 again");
+          "a.sdf:11: the bond of atoms 2 and 3 is repeated");
     CHECK(message_of_sdf(replaced(acetate_v2000, "  2  3  2", "  2  3  7")) ==
           "a.sdf:10: a bond of kind 7; expected 1, 2, 3 or 4 (aromatic)");
     CHECK(message_of_sdf(replaced(acetate_v2000, "M  END\n$$$$\n", "")) ==
@@ -126,5 +126,5 @@ TEST_CASE("what is wrong in a ligand's file is named with its line", "[ligands][
     CHECK(message_of_mol2(replaced(acetate_mol2, "3 2 4 ar", "3 2 4 xx")) ==
           "a.mol2:15: a bond of kind 'xx'; expected 1, 2, 3, am, ar or un");
     CHECK(message_of_mol2("@<TRIPOS>MOLECULE\nx\n") ==
-          "a.mol2:2: no atoms; expected a section @<TRIPOS>ATOM");
+          "a.mol2:2: the file has no atoms; expected a section @<TRIPOS>ATOM");
 }

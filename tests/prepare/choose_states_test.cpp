@@ -99,7 +99,7 @@ TEST_CASE("acceptors at the edge of their range decide where nothing else does",
     add_carbonyl(aside, 9, {2.73, -1.4, 0}, {3.8, -2.0, 0});
     add_carbonyl(aside, 8, {-2.0, -2.8, 0}, {-2.7, -3.8, 0});
     CHECK(state_of(aside).histidine == "HSD");
-    CHECK_THAT(state_of(aside).reason, Contains("ND1 gives to ALA A"));
+    CHECK_THAT(state_of(aside).reason, Contains("ND1 donates to ALA A"));
 }
 
 TEST_CASE("between a carbonyl and an acid a histidine is charged and stays", "[prepare]") {
@@ -139,7 +139,7 @@ TEST_CASE("an amide turns for a partner alone", "[prepare]") {
     const ChosenState turned = state_of(acceptor);
     CHECK(turned.is_flipped);
     CHECK(turned.gain > 0.5);
-    CHECK_THAT(turned.reason, Contains("NE2 gives to ALA A 5 O"));
+    CHECK_THAT(turned.reason, Contains("NE2 donates to ALA A 5 O"));
     const std::vector<std::size_t> held{0};
     CHECK(choose_states(acceptor.structure(), {.waters = {}, .given = {}, .held = held}).empty());
     StructureWriter good = glutamine();  // before the nitrogen

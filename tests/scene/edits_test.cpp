@@ -384,7 +384,7 @@ TEST_CASE("a setting that no coupling has is refused with those that it has",
         {"clamp_N=4", "'coupling.clamp_N' is 4; expected a number from 0 to 3.3"},
         {"clamp_N=nan", "expected a finite number"},
         // Against what the coupling has already.
-        {"F_h2_N=0.5", "'coupling.F_h2_N' is 0.5; expected more than F_h1_N, 1"},
+        {"F_h2_N=0.5", "'coupling.F_h2_N' is 0.5 N; expected more than F_h1_N, 1 N"},
         {"F_h1_N=4", "setting coupling.F_h1_N=4: 'coupling.F_h2_N' is 3; expected more than"},
         {"mode", "expected KEY=VALUE"},
         {"=3", "'coupling.' is not a key"},

@@ -233,7 +233,7 @@ TEST_CASE("a number out of its range or not finite is told with the range", "[sc
         {"[coupling]\n\nA_f_min = 0", 19, 11,
          "'coupling.A_f_min' is 0; expected a number from 1 to 10000000000000"},
         {"[device]\nencoder_step_mm = 1e-310", 18, 19,
-         "expected a number that is 0, or from 1e-06 to 1"},
+         "expected a number that is 0 or from 1e-06 to 1"},
         {"[lesson.a]\ntext = \"x\"\ntask = \"y\"\nat_least = 1e300\nat_most = 1", 20, 12,
          "expected a number from -1000000 to 1000000"},
         {"[hand]\npath = [[0, 1], [1, 1e300]]", 18, 17, "numbers from -100000 to 100000"},
@@ -259,7 +259,7 @@ TEST_CASE("a file that a scene names must be there", "[scene][errors]") {
 
     CHECK_THAT(error_of(replaced(base, "tip3p.str", "tip4p.str")),
                StartsWith(at(3, 10) + "'force_field.files' names a file that does not exist: " +
-                          folder + "tip4p.str is not there"));
+                          folder + "tip4p.str; expected a file in the scene's folder"));
     CHECK_THAT(error_of(replaced(base, "\"dimer.crd\"", "\"\"")), StartsWith(at(5, 13)));
     // What a command makes may not be there yet.
     const std::string made =
@@ -401,7 +401,7 @@ TEST_CASE("fields that contradict each other are told at one of them", "[scene][
     };
     const auto row = GENERATE(values<Row>({
         {"[coupling]\nF_h2_N = 1.0", 18, 10,
-         "'coupling.F_h2_N' is 1; expected more than F_h1_N, 1"},
+         "'coupling.F_h2_N' is 1 N; expected more than F_h1_N, 1 N"},
         // The other of the two is a default: told at the table that should hold it.
         {"[coupling]\nF_h1_N = 3.0", 17, 1, "'coupling.F_h2_N' is 3; expected more than F_h1_N, 3"},
         {"[coupling]\nA_d_max = 1.0", 18, 11, "expected A_d_min, 5000000, or more"},
@@ -427,7 +427,7 @@ TEST_CASE("few degrees of freedom, or a time, are of the quasi-static step alone
     CHECK_NOTHROW(parse_scene(method + "active = 1000000\n", file));
     CHECK_NOTHROW(parse_scene(base + "[statics]\nactive = 40\n", file));
     CHECK_THAT(error_of(method + "active = 40\n"),
-               Contains("'statics.method' is \"second-order\", which moves all degrees of freedom; "
+               Contains("'statics.method' is \"second-order\", which always moves all degrees of freedom; "
                         "expected quasi-static with statics.active"));
     CHECK_THAT(error_of(method + "budget_us = 900\n"),
                Contains("expected quasi-static with statics.budget_us"));
@@ -541,7 +541,7 @@ TEST_CASE("what is wrong with a setting is told with the setting as place", "[sc
         {"coupling.=2", "'coupling.' is not a key"},
         {"hand.grip.x=2", "'hand.grip' is a table; expected one of"},
         {"coupling.mode.=word", "'coupling.mode.' is not a key"},
-        {"F_h1_N=3.5", "'coupling.F_h2_N' is 3; expected more than F_h1_N, 3.5"},
+        {"F_h1_N=3.5", "'coupling.F_h2_N' is 3 N; expected more than F_h1_N, 3.5 N"},
         {"structure=x", "'structure' can mean molecules.NAME.structure; expected the full key"},
         {"motion=fixed", "'motion' can mean molecules.NAME.motion; expected the full key"},
     }));
@@ -597,7 +597,7 @@ TEST_CASE("a setting is one line, and a table is no value", "[scene][settings]")
     };
 
     CHECK(error_with("title=\"a\"\nseconds=1") ==
-          "--set: a setting has characters that cannot be printed");
+          "--set: a setting has characters that cannot be printed; expected one line of text");
     CHECK_THAT(error_with("hand=3"), Contains("'hand' is a table; expected one of its keys"));
     CHECK_THAT(error_with("mode=6"), !Contains("did you mean"));
     CHECK_THAT(error_with("mode=2.0"), Contains("'coupling.mode' is 2.0; expected one of"));
@@ -763,7 +763,7 @@ TEST_CASE("what [view] cannot mean is refused where it stands", "[scene][errors]
         {"camera = [0, 91, 1]", 10,
          "'view.camera' is [0, 91, 1]; expected [azimuth, elevation, zoom]: azimuth in degrees, "
          "elevation from -90 to 90 degrees, zoom factor from 0.01 to 100"},
-        {"camera = [0, 0, 0]", 10, "a factor from 0.01 to 100"},
+        {"camera = [0, 0, 0]", 10, "zoom factor from 0.01 to 100"},
         {"look_at = \"fixt\"", 11, "'view.look_at' is \"fixt\", which is not a molecule"},
         {"clip = 1", 8, "expected true or false"},
         {"measure = \"all; all\"", 11, "expected a list of texts"},
@@ -807,7 +807,7 @@ TEST_CASE("what a step of a lesson cannot ask is refused where it stands", "[sce
         {{step, "expected one or both, or a question"},
          {step + "at_most = 1.0\n" + question + "why = [\"x\", \"y\"]\n",
           "has both a question and bounds"},
-         {step + question + "why = [\"x\", \"y\"]\nright = 3\n", "is 3, of 2 answers"},
+         {step + question + "why = [\"x\", \"y\"]\nright = 3\n", "is 3; expected the number of one of the 2 answers"},
          {step + question + "why = [\"x\", \"y\", \"z\"]\n", "explains 3 of 2 answers"},
          {step + question, "the key 'lesson.one.question.why' is missing"},
          {step + "at_most = 1.0\nof = [\"all\"]\n",
@@ -837,7 +837,7 @@ TEST_CASE("what the hand holds, and how, must go together", "[scene][errors]") {
     CHECK_THAT(
         error_of(by_spring(in_space)),
         StartsWith(at(14, 12) + "'grab.molecule' is \"moved\", whose motion is \"translate\"") &&
-            Contains("expected a free molecule, or one that is fixed and flexible"));
+            Contains("expected a molecule that is free, or fixed and flexible"));
     CHECK_THAT(error_of(by_spring(replaced(base, "along-x", "fixed"))),
                StartsWith(at(14, 12)) && Contains("fixed and flexible"));
     CHECK_THAT(

@@ -190,15 +190,14 @@ TEST_CASE("what the second hand holds and does is checked as with the first",
                Contains("'molecules.other.motion' is \"translate\", but the hand moves only "
                         "grab.molecule;"));
     CHECK_THAT(two_hands_error(two_hands + "[second.hand]\nstart_angstrom = 3\n"),
-               StartsWith(place(24, 18) + "'second.hand.start_angstrom' is for a molecule that "
-                                          "moves along x; expected second.hand.start_offset"));
+               StartsWith(place(24, 18) + "'second.hand.start_angstrom' applies to a molecule that moves along x"));
     CHECK_THAT(two_hands_error(two_hands + "[second.hand]\ngrip = \"none\"\n"),
                Contains("'second.hand.stroke' is \"in-out\", but with the grip \"none\""));
     CHECK_THAT(two_hands_error(two_hands + "[second.hand]\nstroke = \"path\"\n"),
                StartsWith(place(24, 10) + "'second.hand.stroke' is \"path\", but "
                                           "'second.hand.path' has no point"));
     CHECK_THAT(two_hands_error(two_hands + "[second.hand]\npath = [[1, 0], [1, 2]]\n"),
-               StartsWith(place(24, 8) + "'second.hand.path' has the time 1 after 1"));
+               StartsWith(place(24, 8) + "'second.hand.path' has the time 1 s after 1 s"));
     CHECK_THAT(two_hands_error(two_hands + "[second.hand]\npeak_nN = -1\n"),
                StartsWith(place(24, 11) + "'second.hand.peak_nN' is -1; expected a number"));
     CHECK_THAT(two_hands_error(two_hands + "[second.hands]\npeak_nN = 1\n"),

@@ -75,7 +75,7 @@ TEST_CASE("what was felt of a range, and what was not so exact", "[session][accu
     CHECK(report->active == Approx((410.0 + 8) / 11));
     CHECK(report->steps == 2);
     const UnmetRequirements unmet = find_unmet(*report);
-    CHECK_THAT(unmet.tolerance, Contains("within 90 pN, 1.8 times the 50 asked"));
+    CHECK_THAT(unmet.tolerance, Contains("below 90 pN, 1.8 times the limit of 50 pN"));
     CHECK_THAT(unmet.period, Contains("2.5 times"));
     CHECK_THAT(unmet.reach, Contains("up to 4.5 times"));
     CHECK_THAT(unmet.motors, Contains("for 25 % of the time"));

@@ -421,7 +421,7 @@ TEST_CASE("an edit that cannot be made leaves everything as it was, and says why
         {AddEdit{"", "held", "a:b", {}}, "'a:b' is not a name of a molecule"},
         {AddEdit{"", "held", "", {}}, "has no name"},
         {RemoveEdit{"nobody"}, "there is no molecule 'nobody'"},
-        {PinEdit{{"held"}}, "is a whole molecule; expected \"held:25\""},
+        {PinEdit{{"held"}}, "is a whole molecule; expected a residue or atom of it"},
         {RestraintEdit{{"held:2 CA"}, {}, 20, 0}, "between two atoms or residues"},
         {MobilityEdit{"held", Motion::Translate, {}},
          "this motion needs a hand that holds the molecule"},

@@ -444,7 +444,7 @@ TEST_CASE("only joints of flexible molecules turn, and those that the scene name
                    joints_with({"molecules.resting.shape=rigid", "joints.turn=[\"PEPA 2 CA CB\"]"});
                }),
                Contains("joints.turn") &&
-                   Contains("bond PEPA GLU 2 CA - PEPA GLU 2 CB is of a rigid molecule"));
+                   Contains("bond PEPA GLU 2 CA - PEPA GLU 2 CB belongs to a rigid molecule"));
 }
 
 TEST_CASE("runs repeat to the bit", "[simulation][flexible]") {
@@ -569,7 +569,7 @@ TEST_CASE("a scene is told which of its joints, atoms and springs are not there"
     const auto row = GENERATE(values<Row>({
         {"joints", "turn = [\"PEPB 2 CA CX\"]",
          "\"PEPB 2 CA CX\" names atom 'CX' of residue 2 of segment 'PEPB', which does not exist"},
-        {"joints", "rigid = [\"PEPC 2 C 3 N\"]", "segment 'PEPC', which is not"},
+        {"joints", "rigid = [\"PEPC 2 C 3 N\"]", "segment 'PEPC', which does not exist"},
         {"joints", "springs = [\"PEPB 2 CA\"]",
          "\"PEPB 2 CA\" is not a bond; expected \"A 25 CB CG\" or, between residues, \"A 25 C 26 "
          "N\""},
@@ -612,7 +612,7 @@ TEST_CASE("molecules that are bonded across segments cannot move apart",
     const std::string error = load_error_of([&] { load_world(broken.scene()); });
 
     CHECK_THAT(error, Contains("both.psf:"));
-    CHECK_THAT(error, Contains("PEPB ARG 3 C and TAIL ALA 4 N are bonded, across segments"));
+    CHECK_THAT(error, Contains("atoms PEPB ARG 3 C and TAIL ALA 4 N of different segments are bonded"));
     CHECK_THAT(error, Contains("expected molecules without bonds between them"));
 }
 

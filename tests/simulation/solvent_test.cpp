@@ -110,7 +110,7 @@ TEST_CASE("HIV protease with TL-3 loads with neutral groups, at rest in implicit
 TEST_CASE("charges that do not go with the solvent are refused with what to do",
           "[simulation][solvent]") {
     CHECK_THAT(error_of(scene_of("salt-bridge/vacuum.toml", {"force_field.solvent=eef1-sb"})),
-               Contains("EEF1-SB needs neutral charges, and ionic groups are not neutral: ASP of A "
+               Contains("EEF1-SB needs neutral charges, but ionic groups are not neutral: ASP of A "
                         "ASP 2 (-1.00 e), LYS of B LYS 2 (+1.00 e)") &&
                    Contains("palpa prepare --solvent eef1-sb"));
     CHECK_THAT(error_of(scene_of("salt-bridge/solvent.toml", {"force_field.solvent=none"})),
