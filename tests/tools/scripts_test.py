@@ -24,7 +24,8 @@ class Scripts(unittest.TestCase):
                      "scripts/check_windows", "scripts/make_manual", "scripts/check_skips",
                      "scripts/compare_peers",
                      "scripts/compare_tl3", "scripts/csv_table", "scripts/docs_stats", "scripts/mutate",
-                     "scripts/plot_adaptive", "scripts/run_table", "scripts/soak", "scripts/wake_up", "scripts/stroke_table", "scripts/update_results",
+                     "scripts/plot_adaptive", "scripts/run_table", "scripts/soak", "scripts/wake_up",
+                     "scripts/plot_scenarios", "scripts/stroke_table", "scripts/update_results",
                      "scripts/plot_study", "scripts/update_translations"):
             with self.subTest(tool=name):
                 result = run(ROOT / "tools" / name, "--help")
