@@ -17,6 +17,8 @@
 
 using namespace palpa;
 using Catch::Contains;
+using Catch::EndsWith;
+using Catch::StartsWith;
 using test::force_field_of;
 using test::joined_names;
 using test::load_error_of;
