@@ -101,8 +101,9 @@ class Version(unittest.TestCase):
     def test_the_first_line_is_version_and_commit_and_more_follows(self):
         lines = palpa("--version").stdout.splitlines()
         self.assertRegex(lines[0], r"^\d+\.\d+\.\d+ \(\S+\)$")
-        self.assertEqual([line.split()[0] for line in lines[1:]], ["compiler", "processor", "Vulkan"])
-        self.assertRegex(lines[1], r"(GCC|Clang|MSVC) .*\d")
+        self.assertEqual([line.split()[0] for line in lines[1:]], ["formats", "compiler", "processor", "Vulkan"])
+        self.assertEqual(lines[1].split(None, 1)[1], "scene 2.0, recording 2.0, journal 2.0")
+        self.assertRegex(lines[2], r"(GCC|Clang|MSVC) .*\d")
         # As the kernel of the operating system names what the processor can do.
         cpuinfo = Path("/proc/cpuinfo")
         flags = re.search(r"^flags\s*:(.*)$", cpuinfo.read_text(), re.M) if cpuinfo.exists() else None
@@ -110,15 +111,15 @@ class Version(unittest.TestCase):
             has = set(flags[1].split())
             kind = ("AVX3" if {"avx512f", "avx512bw", "avx512dq", "avx512vl", "avx512cd"} <= has else
                     "AVX2" if {"avx2", "fma", "bmi2"} <= has else "S")  # SSE4, SSSE3, SSE2, SCALAR
-            self.assertTrue(lines[2].split()[1].startswith(kind), lines[2])
+            self.assertTrue(lines[3].split()[1].startswith(kind), lines[3])
 
     def test_where_no_driver_is_it_says_so(self):
         with tempfile.TemporaryDirectory() as folder:
             nothing = {"VK_ICD_FILENAMES": folder + "/none.json", "VK_DRIVER_FILES": folder + "/none.json"}
             result = palpa("--version", **nothing)
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertRegex(result.stdout.splitlines()[3], r"^Vulkan +none: \w+")
-        self.assertEqual(len(result.stdout.splitlines()), 4)
+        self.assertRegex(result.stdout.splitlines()[4], r"^Vulkan +none: \w+")
+        self.assertEqual(len(result.stdout.splitlines()), 5)
 
 
 if __name__ == "__main__":
