@@ -97,6 +97,27 @@ class Licences(unittest.TestCase):
         self.assertIn("Bottaro", page)
 
 
+    def test_the_list_of_parts_has_every_library_once(self):
+        """Fields that SPDX 2.3 demands, by its specification, clauses 6, 7 and 11."""
+        parts = json.loads(palpa("licences", "--spdx").stdout)
+        self.assertEqual((parts["spdxVersion"], parts["dataLicense"], parts["SPDXID"]),
+                         ("SPDX-2.3", "CC0-1.0", "SPDXRef-DOCUMENT"))
+        self.assertRegex(parts["creationInfo"]["created"], r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
+        packages = parts["packages"]
+        self.assertEqual([package["name"] for package in packages],
+                         ["palpa", *(library["name"] for library in self.libraries)])
+        ids = [package["SPDXID"] for package in packages]
+        self.assertEqual(len(set(ids)), len(ids))
+        for package in packages:
+            self.assertRegex(package["SPDXID"], r"^SPDXRef-[A-Za-z0-9.-]+$")
+            self.assertEqual(package["downloadLocation"], "NOASSERTION")
+            self.assertTrue(package["licenseDeclared"])
+        related = {(row["spdxElementId"], row["relationshipType"], row["relatedSpdxElement"])
+                   for row in parts["relationships"]}
+        self.assertEqual(related, {("SPDXRef-DOCUMENT", "DESCRIBES", "SPDXRef-palpa"),
+                                   *(("SPDXRef-palpa", "DEPENDS_ON", name) for name in ids[1:])})
+
+
 class Version(unittest.TestCase):
     def test_the_first_line_is_version_and_commit_and_more_follows(self):
         lines = palpa("--version").stdout.splitlines()
