@@ -149,8 +149,8 @@ TEST_CASE("what a client pulls in a session is played again to the bit",
         REQUIRE(poll_until([&] { return client.state() == ImdState::Closed && !is_felt(); }));
         REQUIRE(live.wait_for_steps(50));
         const std::vector<std::string> notes = live.session->take_server_notes();
-        CHECK(std::ranges::count(notes, "client 1 watches") == 1);
-        CHECK(std::ranges::count(notes, "client 1 pulls") == 1);
+        CHECK(std::ranges::count(notes, "client 1 is watching") == 1);
+        CHECK(std::ranges::count(notes, "client 1 is pulling") == 1);
         CHECK(std::ranges::count(notes, "client 1 disconnected normally") == 1);
         live.session->end_recording();
     }

@@ -254,9 +254,10 @@ TEST_CASE("a stick that lacks what a constant force takes says what", "[devices]
 
     const DeviceCheck plain = last_check({0x044f, 0xb108, 1, 4, false, "a plain stick"});
     CHECK(plain.layer == "bus");
-    CHECK_THAT(plain.found, Catch::Contains("no force-feedback joystick among the 1 input devices") &&
-                                Catch::Contains("044f:b108 is a joystick without a usable force: "
-                                                "its report descriptor has no X axis"));
+    CHECK_THAT(plain.found,
+               Catch::Contains("no force-feedback joystick among the 1 input devices") &&
+                   Catch::Contains("044f:b108 is a joystick without a usable force: "
+                                   "its report descriptor has no X axis"));
 }
 
 TEST_CASE("a stick with room for one effect plays it, and one without any is not used",

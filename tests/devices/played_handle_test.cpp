@@ -109,7 +109,8 @@ TEST_CASE("what cannot be played is told with its line", "[devices][played]") {
     CHECK_THAT(told("time_s,handle_x_m,handle_y_m\n"), Contains("'handle_z_m' is missing"));
     CHECK_THAT(told("time_s,time_s\n"), Contains("'time_s' is repeated"));
     CHECK_THAT(told(header + "0,0,0\n"), Contains("hand.csv:2: the row has 3 values; expected 4"));
-    CHECK_THAT(told(header + "0,0,0,0,0\n"), Contains("hand.csv:2: the row has 5 values; expected 4"));
+    CHECK_THAT(told(header + "0,0,0,0,0\n"),
+               Contains("hand.csv:2: the row has 5 values; expected 4"));
     CHECK_THAT(told(header + "0,0,0,up\n"),
                Contains("hand.csv:2: 'up' is not a number; expected one for handle_z_m"));
     CHECK_THAT(told(header + "0,0,nan,0\n"), Contains("'nan' is not a number"));

@@ -188,9 +188,10 @@ TEST_CASE("a field that is blank or cut off is told with line and column", "[for
 TEST_CASE("missing and surplus atoms are told", "[formats][crd]") {
     CHECK(error_of(replaced(normal, "    4\n", "    5\n")) ==
           "w.crd:7: ends after 4 of the 5 atoms announced on line 3");
-    CHECK_THAT(error_of(normal.substr(0, normal.find("-1.57337"))),
-               StartsWith("w.crd:6:52: the segment name is missing; the file ends here after 2 of the 4 "
-                          "atoms announced on line 3"));
+    CHECK_THAT(
+        error_of(normal.substr(0, normal.find("-1.57337"))),
+        StartsWith("w.crd:6:52: the segment name is missing; the file ends here after 2 of the 4 "
+                   "atoms announced on line 3"));
     CHECK_THAT(error_of(replaced(normal, "    4\n", "    3\n")),
                StartsWith("w.crd:7: ") && Contains("3 atoms"));
     CHECK_THAT(error_of(normal + "\nmore\n"), StartsWith("w.crd:9: "));

@@ -214,7 +214,8 @@ TEST_CASE("what is wrong with models is told with its frame", "[formats][traject
           "w.cif: frame 2: atom 1 has the coordinate '?'; expected a number within ±100000 Å");
     CHECK_THAT(cif_error(replaced(two_cif_models, "2 ATOM -3.500 -1.500 -2.500 H 2", "2")),
                Contains("frame 2: has 1 atoms; expected 2"));
-    CHECK_THAT(cif_error(replaced(two_cif_models, "H 2\n", "H 1\n")), Contains("model 1 is repeated"));
+    CHECK_THAT(cif_error(replaced(two_cif_models, "H 2\n", "H 1\n")),
+               Contains("model 1 is repeated"));
     CHECK_THAT(cif_error(replaced(two_cif_models, "H 2\n", "H\n")), Contains("ends after 5 of 6"));
     CHECK_THAT(cif_error(replaced(two_cif_models, "_atom_site.Cartn_y", "_atom_site.y")),
                Contains("a column _atom_site.Cartn_x, Cartn_y or Cartn_z is missing"));

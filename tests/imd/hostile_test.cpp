@@ -248,8 +248,8 @@ TEST_CASE("a server of hostile clients goes on, and no force of theirs outlives 
         std::vector<std::string> notes;
         const std::string name = "client " + std::to_string(i + 2) + " ";
         const auto is_end = [&](const std::string& note) {
-            return note.starts_with(name) && note != name + "is watching" && note != name + "is pulling" &&
-                   note.find(" may not ") == note.npos;
+            return note.starts_with(name) && note != name + "is watching" &&
+                   note != name + "is pulling" && note.find(" may not ") == note.npos;
         };
         test::until(
             [&] {

@@ -104,7 +104,7 @@ TEST_CASE("clients that say go are sent frames of version 2", "[imd][server]") {
     Engine engine;
     CHECK_FALSE(engine.server->count_step());
     Peer first = engine.join(), second = engine.join();
-    engine.expect_note("client 2 watches");
+    engine.expect_note("client 2 is watching");
 
     engine.step(made_frame(1));
     ImdFrame with_energies = made_frame(2);
@@ -170,10 +170,10 @@ TEST_CASE("the first client that sends forces pulls, until it leaves", "[imd][se
     engine.until([&] { return !engine.server->pull().atoms.empty(); });
     CHECK(engine.server->pull().atoms == std::vector<std::int32_t>{2, 0});
     CHECK(engine.server->pull().forces == std::vector<Vec3>{Vec3(0.5, 1, 1.5), Vec3(-2, 0, 0.25)});
-    engine.expect_note("client 2 pulls");
+    engine.expect_note("client 2 is pulling");
 
     watcher.send(test::client_forces(native, {1}, {9, 9, 9}));
-    engine.expect_note("client 1 may not pull: client 2 pulls");
+    engine.expect_note("client 1 may not pull: client 2 is pulling");
     CHECK(engine.server->pull().atoms == std::vector<std::int32_t>{2, 0});
 
     puller.send(test::client_forces(native, {0}, {2, 0, 0}));  // in place of the others
@@ -186,7 +186,7 @@ TEST_CASE("the first client that sends forces pulls, until it leaves", "[imd][se
     CHECK(engine.server->pull().forces.empty());
     engine.expect_end(puller);
     watcher.send(a_pull);
-    engine.expect_note("client 1 pulls");
+    engine.expect_note("client 1 is pulling");
     watcher.close();
     engine.expect_note("client 1 ");
     CHECK(engine.server->pull().atoms.empty());
@@ -218,10 +218,10 @@ TEST_CASE("who does not pull commands nothing while another does", "[imd][server
     Engine engine({.may_kill = true});
     Peer puller = engine.join(), watcher = engine.join();
     puller.send(a_pull);
-    engine.expect_note("client 1 pulls");
+    engine.expect_note("client 1 is pulling");
 
     watcher.send(pause_or_resume + hex("00000005 00000000"));
-    engine.expect_note("client 2 may not pause: client 1 pulls");
+    engine.expect_note("client 2 may not pause: client 1 is pulling");
     CHECK_FALSE(engine.server->is_paused());
     CHECK_FALSE(engine.server->is_killed());
     puller.send(hex("00000005 00000000"));
@@ -353,7 +353,7 @@ TEST_CASE("another number of atoms drops who knows the old one", "[imd][server]"
     Peer first = engine.join(), silent = engine.connect();
     engine.expect(silent, greeting_of_2);
     first.send(a_pull);
-    engine.expect_note("client 1 pulls");
+    engine.expect_note("client 1 is pulling");
     engine.server->change_atoms(3);
     CHECK(engine.server->clients() == 1);
 

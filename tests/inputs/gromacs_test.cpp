@@ -57,7 +57,8 @@ TEST_CASE("a box has CHARMM36's cutoff or what it has room for", "[inputs][groma
     CHECK(gromacs_cutoff(system).from == Approx(6.3));
     CHECK_THAT(file_of(format_gromacs(system, {}), "run.mdp"), Contains("coulombtype = pme"));
     system.box = Vec3(9, 30, 30);
-    CHECK_THAT(load_error_of([&] { (void)format_gromacs(system, {}); }), Contains("too short for a cutoff"));
+    CHECK_THAT(load_error_of([&] { (void)format_gromacs(system, {}); }),
+               Contains("too short for a cutoff"));
 }
 
 TEST_CASE("vacuum is a box in which no atom sees another one twice", "[inputs][gromacs]") {

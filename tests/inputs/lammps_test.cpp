@@ -60,7 +60,8 @@ TEST_CASE("what LAMMPS lacks is refused", "[inputs][lammps]") {
                Contains("expected whole degrees"));
     system = test::four_in_a_row();
     system.topology.impropers = {{0, 1, 2, 3, 10, 0.6}};
-    CHECK_THAT(load_error_of([&] { (void)format_lammps(system, {}); }), Contains("expected 0 or 180"));
+    CHECK_THAT(load_error_of([&] { (void)format_lammps(system, {}); }),
+               Contains("expected 0 or 180"));
     system = test::four_in_a_row();
     CmapMap map;
     map.size = 12;

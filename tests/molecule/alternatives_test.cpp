@@ -38,9 +38,10 @@ TEST_CASE("an atom in alternate locations or models is refused with both places"
     CHECK(error_of(structure_of("AB", "11")) ==
           "a.pdb:2: atom A PHE 53 N is repeated in location B, first in location A on line 1; "
           "expected one position for each atom (palpa prepare chooses one)");
-    CHECK_THAT(error_of(structure_of("  ", "12")),
-               Catch::StartsWith("a.pdb:2: atom A PHE 53 N is repeated in model 2, first in model 1 on "
-                                 "line 1; expected"));
+    CHECK_THAT(
+        error_of(structure_of("  ", "12")),
+        Catch::StartsWith("a.pdb:2: atom A PHE 53 N is repeated in model 2, first in model 1 on "
+                          "line 1; expected"));
     CHECK_THAT(error_of(structure_of("ABC", "111")),
                Catch::Contains("on line 1 (2 repeated lines);"));
     // Two residues in one place are alternatives as well.

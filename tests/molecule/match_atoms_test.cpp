@@ -155,8 +155,9 @@ TEST_CASE("all atoms without a place are counted, the first few named", "[molecu
 }
 
 TEST_CASE("an atom in two places is nobody's to choose", "[molecule]") {
-    CHECK_THAT(error_of({{"A", "ALA", "1", "N"}}, {{"A", "ALA", "1", "N"}, {"A", "ALA", "1", "N"}}),
-               Catch::StartsWith("b.crd:2: atom A ALA 1 N is repeated, first on line 1; expected one"));
+    CHECK_THAT(
+        error_of({{"A", "ALA", "1", "N"}}, {{"A", "ALA", "1", "N"}, {"A", "ALA", "1", "N"}}),
+        Catch::StartsWith("b.crd:2: atom A ALA 1 N is repeated, first on line 1; expected one"));
     // Only where it is wanted.
     CHECK(indices_of(connectivity_of({{"A", "ALA", "1", "C"}}),
                      structure_of({{"A", "ALA", "1", "N"},

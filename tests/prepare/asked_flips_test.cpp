@@ -109,5 +109,6 @@ TEST_CASE("what cannot be turned over is said", "[prepare]") {
                Contains("--flip: ALA C 3 cannot be flipped; expected an ASN, GLN or HIS"));
     StructureWriter broken;
     broken.backbone("GLN", "A", 1, 0);
-    CHECK_THAT(refusal(broken, turning("A", "1")), Contains("--flip: GLN A 1 cannot be flipped: the file has no atom CG"));
+    CHECK_THAT(refusal(broken, turning("A", "1")),
+               Contains("--flip: GLN A 1 cannot be flipped: the file has no atom CG"));
 }

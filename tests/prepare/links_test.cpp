@@ -267,7 +267,7 @@ TEST_CASE("residues that a force field lacks are listed by kind with what to do"
     CHECK_THAT(advise(named.unknown[1], AdviceFor::CommandLine),
                Catch::StartsWith("add top_all36_carb.rtf, par_all36_carb.prm and ") &&
                    Catch::EndsWith(" (--toppar), leave it out (--without BMA) or approximate it "
-                            "(--approximate-ligands)"));
+                                   "(--approximate-ligands)"));
     CHECK(named.unknown[0].meaning == "AMP-PNP, an analogue of ATP");
     CHECK(named.unknown[0].where == std::vector<std::string>{"A:2"});
     CHECK_THAT(advise(named.unknown[0], AdviceFor::CommandLine), Contains("--without ANP"));

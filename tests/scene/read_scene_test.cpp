@@ -426,9 +426,10 @@ TEST_CASE("few degrees of freedom, or a time, are of the quasi-static step alone
     const std::string method = base + "[statics]\nmethod = \"second-order\"\n";
     CHECK_NOTHROW(parse_scene(method + "active = 1000000\n", file));
     CHECK_NOTHROW(parse_scene(base + "[statics]\nactive = 40\n", file));
-    CHECK_THAT(error_of(method + "active = 40\n"),
-               Contains("'statics.method' is \"second-order\", which always moves all degrees of freedom; "
-                        "expected quasi-static with statics.active"));
+    CHECK_THAT(
+        error_of(method + "active = 40\n"),
+        Contains("'statics.method' is \"second-order\", which always moves all degrees of freedom; "
+                 "expected quasi-static with statics.active"));
     CHECK_THAT(error_of(method + "budget_us = 900\n"),
                Contains("expected quasi-static with statics.budget_us"));
 }
@@ -807,7 +808,8 @@ TEST_CASE("what a step of a lesson cannot ask is refused where it stands", "[sce
         {{step, "expected one or both, or a question"},
          {step + "at_most = 1.0\n" + question + "why = [\"x\", \"y\"]\n",
           "has both a question and bounds"},
-         {step + question + "why = [\"x\", \"y\"]\nright = 3\n", "is 3; expected the number of one of the 2 answers"},
+         {step + question + "why = [\"x\", \"y\"]\nright = 3\n",
+          "is 3; expected the number of one of the 2 answers"},
          {step + question + "why = [\"x\", \"y\", \"z\"]\n", "explains 3 of 2 answers"},
          {step + question, "the key 'lesson.one.question.why' is missing"},
          {step + "at_most = 1.0\nof = [\"all\"]\n",

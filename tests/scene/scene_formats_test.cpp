@@ -18,10 +18,10 @@ using test::load_error_of;
 
 namespace {
 
-const std::string format_file = test::in_project("scenes/water/test.toml");
+const std::string water_file = test::in_project("scenes/water/test.toml");
 
 // `head`: lines before all tables.
-std::string scene_of_format(const std::string& head, const std::string& tables = "") {
+std::string scene_text(const std::string& head, const std::string& tables = "") {
     return head + R"(
 [force_field]
 files = ["tip3p.str"]
@@ -40,8 +40,8 @@ measured_from = "fixed"
 )" + tables;
 }
 
-std::string format_error_of(const std::string& text) {
-    return load_error_of([&] { (void)parse_scene(text, format_file); });
+std::string refusal_of(const std::string& text) {
+    return load_error_of([&] { (void)parse_scene(text, water_file); });
 }
 
 const std::string old_names = R"([statics]
@@ -58,7 +58,7 @@ appearance = { molecule = "moved", colouring = "chain" }
 TEST_CASE("a scene of format 1 has its old names, each with a note", "[scene][format]") {
     const std::string head = GENERATE("", "format = \"1\"", "format = \"1.0\"");
 
-    const SceneDescription read = parse_scene(scene_of_format(head, old_names), format_file);
+    const SceneDescription read = parse_scene(scene_text(head, old_names), water_file);
 
     CHECK(read.statics.weights == JointWeights::HandProximity);
     CHECK(read.view.colouring == Colouring::Element);
@@ -83,7 +83,7 @@ TEST_CASE("every old value is read as the new one", "[scene][format]") {
                  Row{"near-hand", JointWeights::HandProximity});
 
     const SceneDescription read = parse_scene(
-        scene_of_format("", fmt::format("[statics]\nweights = \"{}\"\n", row.before)), format_file);
+        scene_text("", fmt::format("[statics]\nweights = \"{}\"\n", row.before)), water_file);
 
     CHECK(read.statics.weights == row.now);
 }
@@ -92,7 +92,7 @@ TEST_CASE("names of today need no note, with a number and without", "[scene][for
     const std::string head = GENERATE("", "format = \"1\"", "format = \"2\"", "format = \"2.0\"");
 
     const SceneDescription read =
-        parse_scene(scene_of_format(head, "[view]\ncolour = \"element\"\n"), format_file);
+        parse_scene(scene_text(head, "[view]\ncolour = \"element\"\n"), water_file);
 
     CHECK(read.view.colouring == Colouring::Element);
     CHECK(read.notes.empty());
@@ -101,15 +101,14 @@ TEST_CASE("names of today need no note, with a number and without", "[scene][for
 TEST_CASE("a scene of this format has no old names", "[scene][format]") {
     const std::string head = "format = \"2.0\"";
 
-    CHECK_THAT(format_error_of(scene_of_format(head, "[view]\ncolouring = \"element\"\n")),
+    CHECK_THAT(refusal_of(scene_text(head, "[view]\ncolouring = \"element\"\n")),
                Contains("'view.colouring' is now 'view.colour'"));
-    CHECK_THAT(format_error_of(scene_of_format(head, "[statics]\nweights = \"near-hand\"\n")),
+    CHECK_THAT(refusal_of(scene_text(head, "[statics]\nweights = \"near-hand\"\n")),
                Contains("'statics.weights': near-hand is now hand-proximity"));
 }
 
 TEST_CASE("an old name beside the new one is unknown", "[scene][format]") {
-    CHECK_THAT(format_error_of(
-                   scene_of_format("", "[view]\ncolouring = \"element\"\ncolour = \"chain\"\n")),
+    CHECK_THAT(refusal_of(scene_text("", "[view]\ncolouring = \"element\"\ncolour = \"chain\"\n")),
                Contains("unknown key 'view.colouring'"));
 }
 
@@ -118,8 +117,7 @@ TEST_CASE("of a newer minor format what is unknown is left out with a note", "[s
         "[view]\nsparkle = 3\nrepresentation = \"hologram\"\ncolour = \"element\"\n[weather]\nwind "
         "= 1\n";
 
-    const SceneDescription read =
-        parse_scene(scene_of_format("format = \"2.99\"", later), format_file);
+    const SceneDescription read = parse_scene(scene_text("format = \"2.99\"", later), water_file);
 
     CHECK(read.view.colouring == Colouring::Element);
     CHECK(read.view.representation == SceneDescription().view.representation);
@@ -129,33 +127,30 @@ TEST_CASE("of a newer minor format what is unknown is left out with a note", "[s
                Contains("'view.representation' is the text \"hologram\"") && Contains("left out"));
     CHECK_THAT(read.notes[2], Contains("the key 'view.sparkle'"));
     CHECK_THAT(read.notes[3], Contains("the key 'weather'"));
-    CHECK_THAT(format_error_of(scene_of_format("format = \"2.0\"", later)),
-               Contains("unknown key"));
+    CHECK_THAT(refusal_of(scene_text("format = \"2.0\"", later)), Contains("unknown key"));
 }
 
 TEST_CASE("a newer major format is refused with what to do, whatever else is wrong",
           "[scene][format]") {
-    CHECK_THAT(format_error_of("[later]\nkey = 1\n" + scene_of_format("")),
-               Contains("unknown key 'later'"));
+    CHECK_THAT(refusal_of("[later]\nkey = 1\n" + scene_text("")), Contains("unknown key 'later'"));
     CHECK_THAT(
-        format_error_of(scene_of_format("format = \"3.0\"", "[later]\nkey = 1\n")),
+        refusal_of(scene_text("format = \"3.0\"", "[later]\nkey = 1\n")),
         Contains("scene format 3.0 is newer than this program") && Contains("a newer Palpa"));
-    CHECK_THAT(format_error_of(scene_of_format("format = \"0.5\"")), Contains("does not exist"));
-    CHECK_THAT(format_error_of(scene_of_format("format = \"two\"")),
-               Contains("expected a version, \"2.0\""));
-    CHECK_THAT(format_error_of(scene_of_format("format = 2")),
+    CHECK_THAT(refusal_of(scene_text("format = \"0.5\"")), Contains("does not exist"));
+    CHECK_THAT(refusal_of(scene_text("format = \"two\"")), Contains("expected a version, \"2.0\""));
+    CHECK_THAT(refusal_of(scene_text("format = 2")),
                Contains("'format' is 2; expected text in quotes"));
 }
 
 TEST_CASE("a written scene states this format and reads without a note", "[scene][format]") {
-    const SceneDescription read = parse_scene(scene_of_format("", old_names), format_file);
+    const SceneDescription read = parse_scene(scene_text("", old_names), water_file);
 
     const std::string written =
         format_scene(read, [](const std::filesystem::path& path) { return path.string(); });
 
     CHECK(written.starts_with(fmt::format("format = \"{}\"\n", to_string(scene_version))));
     CHECK(written.find("colouring") == std::string::npos);
-    const SceneDescription back = parse_scene(written, format_file);
+    const SceneDescription back = parse_scene(written, water_file);
     CHECK(back.notes.empty());
     CHECK(back.statics.weights == JointWeights::HandProximity);
     CHECK(back.view.colouring == Colouring::Element);
@@ -173,9 +168,9 @@ TEST_CASE("an edit has the names of the format that is stated for it", "[scene][
     const std::string edit =
         "[[edits]]\nat_s = 0\nappearance = { molecule = \"moved\", colouring = \"chain\" }\n";
 
-    const EditDescription read = parse_edit(edit, {format_file, 7}, unnumbered_version);
+    const EditDescription read = parse_edit(edit, {water_file, 7}, unnumbered_version);
 
     CHECK(std::get<AppearanceEdit>(read.action).colouring == Colouring::Chain);
-    CHECK_THAT(load_error_of([&] { (void)parse_edit(edit, {format_file, 7}); }),
+    CHECK_THAT(load_error_of([&] { (void)parse_edit(edit, {water_file, 7}); }),
                Contains("is now 'edits[1].appearance.colour'"));
 }

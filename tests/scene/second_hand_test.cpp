@@ -190,7 +190,8 @@ TEST_CASE("what the second hand holds and does is checked as with the first",
                Contains("'molecules.other.motion' is \"translate\", but the hand moves only "
                         "grab.molecule;"));
     CHECK_THAT(two_hands_error(two_hands + "[second.hand]\nstart_angstrom = 3\n"),
-               StartsWith(place(24, 18) + "'second.hand.start_angstrom' applies to a molecule that moves along x"));
+               StartsWith(place(24, 18) +
+                          "'second.hand.start_angstrom' applies to a molecule that moves along x"));
     CHECK_THAT(two_hands_error(two_hands + "[second.hand]\ngrip = \"none\"\n"),
                Contains("'second.hand.stroke' is \"in-out\", but with the grip \"none\""));
     CHECK_THAT(two_hands_error(two_hands + "[second.hand]\nstroke = \"path\"\n"),

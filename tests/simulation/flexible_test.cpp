@@ -612,7 +612,8 @@ TEST_CASE("molecules that are bonded across segments cannot move apart",
     const std::string error = load_error_of([&] { load_world(broken.scene()); });
 
     CHECK_THAT(error, Contains("both.psf:"));
-    CHECK_THAT(error, Contains("atoms PEPB ARG 3 C and TAIL ALA 4 N of different segments are bonded"));
+    CHECK_THAT(error,
+               Contains("atoms PEPB ARG 3 C and TAIL ALA 4 N of different segments are bonded"));
     CHECK_THAT(error, Contains("expected molecules without bonds between them"));
 }
 

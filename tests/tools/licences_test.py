@@ -97,12 +97,34 @@ class Licences(unittest.TestCase):
         self.assertIn("Bottaro", page)
 
 
+    def test_the_list_of_parts_has_every_library_once(self):
+        """Fields that SPDX 2.3 demands, by its specification, clauses 6, 7 and 11."""
+        parts = json.loads(palpa("licences", "--spdx").stdout)
+        self.assertEqual((parts["spdxVersion"], parts["dataLicense"], parts["SPDXID"]),
+                         ("SPDX-2.3", "CC0-1.0", "SPDXRef-DOCUMENT"))
+        self.assertRegex(parts["creationInfo"]["created"], r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
+        packages = parts["packages"]
+        self.assertEqual([package["name"] for package in packages],
+                         ["palpa", *(library["name"] for library in self.libraries)])
+        ids = [package["SPDXID"] for package in packages]
+        self.assertEqual(len(set(ids)), len(ids))
+        for package in packages:
+            self.assertRegex(package["SPDXID"], r"^SPDXRef-[A-Za-z0-9.-]+$")
+            self.assertEqual(package["downloadLocation"], "NOASSERTION")
+            self.assertTrue(package["licenseDeclared"])
+        related = {(row["spdxElementId"], row["relationshipType"], row["relatedSpdxElement"])
+                   for row in parts["relationships"]}
+        self.assertEqual(related, {("SPDXRef-DOCUMENT", "DESCRIBES", "SPDXRef-palpa"),
+                                   *(("SPDXRef-palpa", "DEPENDS_ON", name) for name in ids[1:])})
+
+
 class Version(unittest.TestCase):
     def test_the_first_line_is_version_and_commit_and_more_follows(self):
         lines = palpa("--version").stdout.splitlines()
         self.assertRegex(lines[0], r"^\d+\.\d+\.\d+ \(\S+\)$")
-        self.assertEqual([line.split()[0] for line in lines[1:]], ["compiler", "processor", "Vulkan"])
-        self.assertRegex(lines[1], r"(GCC|Clang|MSVC) .*\d")
+        self.assertEqual([line.split()[0] for line in lines[1:]], ["formats", "compiler", "processor", "Vulkan"])
+        self.assertEqual(lines[1].split(None, 1)[1], "scene 2.0, recording 2.0, journal 2.0")
+        self.assertRegex(lines[2], r"(GCC|Clang|MSVC) .*\d")
         # As the kernel of the operating system names what the processor can do.
         cpuinfo = Path("/proc/cpuinfo")
         flags = re.search(r"^flags\s*:(.*)$", cpuinfo.read_text(), re.M) if cpuinfo.exists() else None
@@ -110,15 +132,15 @@ class Version(unittest.TestCase):
             has = set(flags[1].split())
             kind = ("AVX3" if {"avx512f", "avx512bw", "avx512dq", "avx512vl", "avx512cd"} <= has else
                     "AVX2" if {"avx2", "fma", "bmi2"} <= has else "S")  # SSE4, SSSE3, SSE2, SCALAR
-            self.assertTrue(lines[2].split()[1].startswith(kind), lines[2])
+            self.assertTrue(lines[3].split()[1].startswith(kind), lines[3])
 
     def test_where_no_driver_is_it_says_so(self):
         with tempfile.TemporaryDirectory() as folder:
             nothing = {"VK_ICD_FILENAMES": folder + "/none.json", "VK_DRIVER_FILES": folder + "/none.json"}
             result = palpa("--version", **nothing)
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertRegex(result.stdout.splitlines()[3], r"^Vulkan +none: \w+")
-        self.assertEqual(len(result.stdout.splitlines()), 4)
+        self.assertRegex(result.stdout.splitlines()[4], r"^Vulkan +none: \w+")
+        self.assertEqual(len(result.stdout.splitlines()), 5)
 
 
 if __name__ == "__main__":

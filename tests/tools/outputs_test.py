@@ -42,6 +42,29 @@ class Outputs(unittest.TestCase):
     def energy(self, system, *arguments):
         return ("energy", system, "--toppar", WATER / "tip3p.str", *arguments)
 
+    def test_nothing_is_written_but_what_was_asked_for(self):
+        """Neither beside the scene, nor in the home folder, nor where the command was begun."""
+        scene, home, here = self.tmp / "scene", self.tmp / "home", self.tmp / "here"
+        shutil.copytree(WATER, scene)
+        home.mkdir()
+        here.mkdir()
+        own = {key: str(home) for key in ("HOME", "XDG_CONFIG_HOME", "XDG_CACHE_HOME", "XDG_DATA_HOME",
+                                          "XDG_STATE_HOME", "TMPDIR")}
+        out = self.tmp / "out"
+        out.mkdir()
+        for command in (("run", scene, "--headless", "--seconds", "0.1", "--record", out / "recording"),
+                        ("run", "--check", scene), ("replay", out / "recording", "--verify"),
+                        ("select", scene, "all"), ("export", scene, "-o", out / "water.pdb"),
+                        ("licences",), ("devices",), ("scene", "view.colour")):
+            with self.subTest(command=command[0]):
+                before = {path for path in self.files() if path.parts[0] != "out"}
+                result = subprocess.run([PROGRAM, *map(str, command)], capture_output=True, text=True, cwd=here,
+                                        stdin=subprocess.DEVNULL, env={**os.environ, **own})
+                self.assertIn(result.returncode, (0, 1), result.stderr)
+                self.assertEqual({path for path in self.files() if path.parts[0] != "out"}, before)
+        self.assertEqual({path.parts[1] for path in self.files() if path.parts[0] == "out"},
+                         {"recording", "water.pdb"})
+
     # ---- one file
 
     def test_an_output_is_replaced_on_demand_only(self):

@@ -110,6 +110,37 @@ class Replay(unittest.TestCase):
                 told = palpa("replay", self.folder, "--verify").stdout
                 self.assertNotIn("all identical", told)
 
+    def test_a_recording_of_the_format_before_is_played_again(self):
+        """Made by another build: another compiler may round otherwise, so forces need only be near."""
+        self.folder = ROOT / "tests" / "data" / "format-1" / "recording"
+        self.assertNotIn("Recording format", (self.folder / "session.toml").read_text())
+        _, report = self.verify()
+        self.assertEqual((report["recorded"], report["compared"], report["surplus"]), (20, 20, 0))
+        self.assertFalse(report["cut_off"])
+        self.assertLess(report["largest_N"], 1e-9)
+
+    def test_recordings_state_their_format_and_newer_ones_are_refused_or_noted(self):
+        self.record("--seconds", "0.1", WATER)
+        session = self.folder / "session.toml"
+        text, line = session.read_text(), "# Recording format 2.0\n"
+        self.assertEqual(text.count(line), 1)
+        self.assertIn('\nformat = "2.0"\n', text)
+        versions = json.loads((self.folder / "summary.json").read_text())["versions"]
+        self.assertEqual((versions["scene_format"], versions["recording_format"]), ("2.0", "2.0"))
+        session.write_text(text.replace(line, "# Recording format 3.0\n"))
+        refused = palpa("replay", self.folder, "--verify")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("recording format 3.0 is newer than this program", refused.stderr)
+        session.write_text(text.replace('format = "2.0"', 'format = "3.1"'))
+        refused = palpa("run", session, "--headless")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("scene format 3.1 is newer than this program", refused.stderr)
+        session.write_text(text.replace(line, "# Recording format 2.5\n"))
+        noted = palpa("replay", self.folder, "--verify")
+        self.assertEqual(noted.returncode, 0, noted.stderr)
+        self.assertIn("note: ", noted.stderr)
+        self.assertIn("recording format 2.5 is newer than 2.0", noted.stderr)
+
     def test_a_force_that_was_another_is_told_with_its_place(self):
         self.record("--seconds", "1", WATER)
         lines = self.trace.read_text().splitlines(keepends=True)

@@ -251,7 +251,7 @@ class Serve(unittest.TestCase):
                 client.command(DISCONNECT)
                 self.assertTrue(client.is_closed())
                 _, err = self.stop_well(run)
-                self.assertIn("serve: client 1 watches\n", err)
+                self.assertIn("serve: client 1 is watching\n", err)
                 self.assertIn("serve: client 1 disconnected normally\n", err)
 
     def test_a_run_that_is_watched_gives_the_bytes_of_one_that_is_not(self):
@@ -315,8 +315,8 @@ class Serve(unittest.TestCase):
                 last = puller.frame().places
             self.assertEqual(last[6:], first[6:])
             _, err = self.stop_well(run)
-        self.assertIn("serve: client 1 pulls\n", err)
-        self.assertIn("serve: client 2 may not pull: client 1 pulls\n", err)
+        self.assertIn("serve: client 1 is pulling\n", err)
+        self.assertIn("serve: client 2 may not pull: client 1 is pulling\n", err)
         self.assertEqual(err.count("the limit for one atom is 10 nN"), 1)
         self.assertEqual(err.count("forces on 1 of 2 atoms have no effect"), 1)
         # Its forces are in no file, so it cannot be played again, and says so.

@@ -6,8 +6,10 @@
 #include "core/version.h"
 #include "tools/commands/command.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <array>
+#include <ctime>
 #include <nlohmann/json.hpp>
 
 namespace palpa {
@@ -43,7 +45,7 @@ constexpr std::array libraries = std::to_array<Library>({
 });
 
 struct LicencesOptions {
-    bool json = false;
+    bool json = false, spdx = false;
 };
 
 // What the built-in force field says of itself: title, origin, terms, whom to cite.
@@ -72,6 +74,61 @@ void print_licences_json(const std::vector<std::string>& about) {
     fmt::print("{}\n", json.dump(2));
 }
 
+// SPDX identifiers have letters, digits, "." and "-".
+std::string spdx_id(std::string_view name) {
+    std::string id = "SPDXRef-";
+    for (const char c : name) {
+        const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                              (c >= '0' && c <= '9') || c == '.' || c == '-';
+        id += is_plain ? c : '-';
+    }
+    return id;
+}
+
+nlohmann::ordered_json spdx_package(std::string_view name, std::string_view version,
+                                    std::string_view licence, std::string_view home) {
+    nlohmann::ordered_json row{{"name", name}, {"SPDXID", spdx_id(name)}};
+    if (!version.empty()) row["versionInfo"] = version;
+    row["downloadLocation"] = "NOASSERTION";
+    row["filesAnalyzed"] = false;
+    if (!home.empty()) row["homepage"] = home;
+    row["licenseConcluded"] = "NOASSERTION";
+    row["licenseDeclared"] = licence;
+    row["copyrightText"] = "NOASSERTION";
+    return row;
+}
+
+// A list of parts (SBOM) as SPDX 2.3 has it: https://spdx.github.io/spdx-spec/v2.3.
+void print_spdx() {
+    const std::string created =
+        fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+    nlohmann::ordered_json json{
+        {"spdxVersion", "SPDX-2.3"},
+        {"dataLicense", "CC0-1.0"},
+        {"SPDXID", "SPDXRef-DOCUMENT"},
+        {"name", fmt::format("palpa-{}", version_name)},
+        {"documentNamespace",
+         fmt::format("urn:palpa:{}:{}:{}", version_name, commit_name, created)},
+        {"creationInfo",
+         {{"created", created},
+          {"creators",
+           nlohmann::ordered_json::array({fmt::format("Tool: palpa-{}", version_name)})}}},
+        {"packages",
+         nlohmann::ordered_json::array({spdx_package("palpa", version_name, "MIT", "")})},
+        {"relationships", nlohmann::ordered_json::array()}};
+    const auto relate = [&](std::string_view from, std::string_view how, std::string_view to) {
+        json["relationships"].push_back(
+            {{"spdxElementId", from}, {"relationshipType", how}, {"relatedSpdxElement", to}});
+    };
+    relate("SPDXRef-DOCUMENT", "DESCRIBES", "SPDXRef-palpa");
+    for (const Library& library : libraries) {
+        json["packages"].push_back(
+            spdx_package(library.name, version_of(library), library.licence, library.home));
+        relate("SPDXRef-palpa", "DEPENDS_ON", spdx_id(library.name));
+    }
+    fmt::print("{}\n", json.dump(2));
+}
+
 void print_licences(const std::vector<std::string>& about) {
     fmt::print("Palpa {} is under the MIT licence. It uses\n\n", version_name);
     for (const Library& library : libraries) {
@@ -84,6 +141,10 @@ void print_licences(const std::vector<std::string>& about) {
 }
 
 int licences_command(const LicencesOptions& options) {
+    if (options.spdx) {
+        print_spdx();
+        return 0;
+    }
     const std::vector<std::string> about = read_about_force_field();
     options.json ? print_licences_json(about) : print_licences(about);
     return 0;
@@ -112,6 +173,7 @@ void add_licences(CLI::App& program, ProgramCommand& chosen) {
     LicencesOptions& options = own_options<LicencesOptions>(command, chosen, licences_command);
     describe(command, "Look and measure", {"palpa licences", "palpa licences --json"});
     command.add_flag("--json", options.json, "print as JSON");
+    command.add_flag("--spdx", options.spdx, "print a list of parts (SBOM) as SPDX 2.3 in JSON");
 }
 
 }  // namespace palpa
