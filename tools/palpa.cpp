@@ -12,6 +12,8 @@
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -84,6 +86,14 @@ int run_program(const std::vector<std::string>& arguments) {
     return code ? *code : chosen();
 }
 
+void print_further(const palpa::LoadError& error) {
+    constexpr std::size_t most = 20;
+    const std::vector<std::string>& problems = error.further();
+    for (std::size_t i = 0; i < std::min(problems.size(), most); ++i)
+        fmt::print(stderr, "{}\n", problems[i]);
+    if (problems.size() > most) fmt::print(stderr, "and {} more\n", problems.size() - most);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -108,7 +118,7 @@ int main(int argc, char** argv) {
         return palpa::engine_lost;
     } catch (const palpa::LoadError& error) {
         fmt::print(stderr, "{}\n", palpa::cite_as_typed(error.what(), arguments));
-        for (const std::string& problem : error.further()) fmt::print(stderr, "{}\n", problem);
+        print_further(error);
         return bad_input;
     } catch (const palpa::Interrupted&) {
         return palpa::exit_code_after(bad_input);

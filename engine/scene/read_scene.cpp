@@ -20,6 +20,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -581,6 +582,7 @@ private:
         }
         std::error_code error;
         if (fs::is_regular_file(value, error)) return true;
+        if (!missing_.insert(value).second) return false;  // was named already
         problem(node, fmt::format("'{}' names a file that does not exist: {}; expected a file in "
                                   "the scene's folder{}",
                                   full_key(field.key), value.generic_string(),
@@ -629,6 +631,7 @@ private:
     ReadingRules rules_;
     Problems& problems_;
     std::vector<fs::path> may_read_;  // folders, links resolved; empty: everything
+    std::set<fs::path> missing_;      // files that are named and do not exist
     bool is_made_;                    // the scene says how its files are made
     std::vector<Level> levels_;
 };

@@ -66,7 +66,7 @@ class Feel(unittest.TestCase):
             recording = Path(folder) / "recording"
             result = palpa("run", "--headless", PEPTIDES, *NEARER, *asked, "--record", recording)
             self.assertEqual(result.returncode, 0, result.stderr)
-            self.assertIn("to feel     100 to 20000 pN, felt as 0.300 to 2.700 N", result.stdout)
+            self.assertIn("range       100 to 20000 pN, felt as 0.300 to 2.700 N", result.stdout)
             feel = json.loads((recording / "summary.json").read_text())["feel"]
             self.assertGreater(feel["audits"], 3)
             self.assertEqual(feel["error_estimates"], feel["audits"])

@@ -107,7 +107,7 @@ class BenchAnswer(unittest.TestCase):
         lines = [line for line in result.stdout.splitlines() if line.startswith("|")]
         self.assertEqual(len({line.count("|") for line in lines}), 1)
         self.assertEqual(len(lines), 2 + len(ALL_PAIRS) + 2 * len(CUTOFF))
-        self.assert_refused("--poses-file", self.poses, "--poses", 3, told="holds 2 poses")
+        self.assert_refused("--poses-file", self.poses, "--poses", 3, told="has 2 poses")
 
     def test_poses_that_are_not_the_scenes_are_refused(self):
         text = self.poses.read_text()
@@ -124,7 +124,7 @@ class BenchAnswer(unittest.TestCase):
 
     def test_files_are_replaced_on_demand_only(self):
         before = self.poses.read_text(), self.picture.read_text()
-        self.assert_refused("--save-poses", self.poses, told="poses.txt: is there already")
+        self.assert_refused("--save-poses", self.poses, told="poses.txt: already exists")
         self.assert_refused("--plot", self.picture, told="answer.svg: is there already")
         mine = Path(self.folder.name) / "mine.txt"
         mine.write_text("mine\n")

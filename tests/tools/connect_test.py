@@ -118,7 +118,7 @@ class Connected(unittest.TestCase):
         with socket.create_server(("127.0.0.1", 0)) as busy:
             result = self.connect(busy.getsockname()[1], "--seconds", 1, "--wait", 1)
         self.assertEqual(result.returncode, 4)
-        self.assertIn("has not sent its handshake; another client may hold it", result.stderr)
+        self.assertIn("has not sent its handshake; another client may be connected", result.stderr)
 
     def test_bad_arguments_are_named(self):
         cases = ((("--lead", "nan,0,0"), "--lead"), (("--record", self.topology / "r"), "is not a folder"))

@@ -82,7 +82,7 @@ class Devices(unittest.TestCase):
     def test_warm_motors_are_told(self):
         checks, _ = self.examine(0, stub="free,warm")
         self.assertEqual(checks["motors"]["outcome"], "failed")
-        self.assertIn("rest", checks["motors"]["remedy"])
+        self.assertIn("cool for some minutes", checks["motors"]["remedy"])
 
     def test_what_the_library_does_not_tell_is_unknown(self):
         checks, _ = self.examine(0, stub="free,silent")

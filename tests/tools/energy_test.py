@@ -246,8 +246,8 @@ class Energy(unittest.TestCase):
         def in_two_models(lines):
             return ["MODEL        1", *lines, "ENDMDL", "MODEL        2", *lines, "ENDMDL"]
         for edit, expected in ((without_hydrogens, ".pdb:1: the structure has no hydrogens"),
-                               (in_two_places, " again in location B, first in location A on line 1"),
-                               (in_two_models, " again in model 2, first in model 1 on line 2 (")):
+                               (in_two_places, " is repeated in location B, first in location A on line 1"),
+                               (in_two_models, " is repeated in model 2, first in model 1 on line 2 (")):
             with self.subTest(edit=edit.__name__):
                 result = self.palpa(self.aera_as_pdb(edit), *toppar)
                 self.assertEqual(result.returncode, 2, result.stdout)

@@ -228,7 +228,7 @@ class Files(Case):
                 (["--psf", psf], "--psf, --coordinates and --toppar together"),
                 (["--box", "8,30,30", *system], "too short for a cutoff"),
                 (["--box", "18,18", *system], "expected three edges"),
-                (["--send", "PEPX", *system], "no such segment; did you mean 'PEPA'"),
+                (["--send", "PEPX", *system], "there is no segment of this name; did you mean 'PEPA'"),
         ):
             result = palpa("engine", "gromacs", "-o", self.folder, *words)
             self.assertEqual(result.returncode, 2, words)

@@ -107,7 +107,7 @@ class Film(unittest.TestCase):
 
     def test_what_does_not_go_together_is_refused(self):
         for arguments, expected in ((("--film", self.tmp / "water.gif"), ".mp4"),
-                                    (("--film", self.film, "-o", self.tmp / "a.png"), "one of them"),
+                                    (("--film", self.film, "-o", self.tmp / "a.png"), "one output"),
                                     ((), "-o FILE.png"), (("-o", self.tmp / "a.png", "--seconds", 1), "--film")):
             result = self.render(*arguments, code=2)
             self.assertIn(expected, result.stderr)

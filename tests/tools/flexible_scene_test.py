@@ -22,7 +22,7 @@ class BundledScene(unittest.TestCase):
         self.assertEqual(report["joints"], 2 * 385 + 1 + 27)
         check = self.palpa("run", "--check", self.SCENE)
         self.assertEqual(check.returncode, 0, check.stderr)
-        self.assertIn("807 degrees: 798 joints, 9 of bases; 3 more of the hand", check.stdout)
+        self.assertIn("807 degrees of freedom: 798 joints, 9 of bases; 3 more of the hand", check.stdout)
 
     def test_the_force_that_the_hand_feels_is_that_on_the_joints_cutoff_or_not(self):
         for setting in ("statics.rest_kcal_per_mol=0.05", "statics.cutoff_angstrom=12"):

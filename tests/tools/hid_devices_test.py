@@ -71,7 +71,7 @@ class HidDevices(unittest.TestCase):
         result = self.palpa("devices", "dualsense", "--json")
         self.assertEqual(result.returncode, 1)
         told = json.loads(result.stdout)
-        self.assertIn("no DualSense among 1 inputs", told["devices"][0]["checks"][-1]["found"])
+        self.assertIn("no DualSense among the 1 input devices", told["devices"][0]["checks"][-1]["found"])
         self.assertTrue(told["next"][0].startswith("dualsense: plug it in"), told["next"])
         result = self.palpa("run", WATER, "--device", "dualsense")
         self.assertEqual(result.returncode, 2)

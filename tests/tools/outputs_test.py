@@ -77,7 +77,7 @@ class Outputs(unittest.TestCase):
                 output = self.tmp / name
                 self.palpa(*command, output, code=code)
                 before = output.read_bytes()
-                self.assert_refused(*command, output, told=f"{name}: is there already")
+                self.assert_refused(*command, output, told=f"{name}: already exists")
                 self.assertEqual(output.read_bytes(), before)
                 self.palpa(*command, output, "--overwrite", code=code)
                 self.assertEqual(output.read_bytes(), before)
@@ -101,7 +101,7 @@ class Outputs(unittest.TestCase):
         link = self.tmp / "forces.csv"
         link.symlink_to(target)
         command = self.energy(WATER / "dimer.crd", "--forces", link)
-        self.assert_refused(*command, told="is there already")
+        self.assert_refused(*command, told="already exists")
         self.assert_refused(*command, "--overwrite", told="is a link")
         self.assertFalse(target.exists())
 
@@ -131,7 +131,7 @@ class Outputs(unittest.TestCase):
         (folder / "report.txt").write_text("mine")
         prepare = ("prepare", WATER / "dimer.crd", "--keep-waters", "--toppar", WATER / "tip3p.str",
                    "-o", folder)
-        self.assert_refused(*prepare, told="report.txt: is there already")
+        self.assert_refused(*prepare, told="report.txt: already exists")
         self.assert_refused(*prepare, "--overwrite", told="report.txt: was not written by this")
         self.assertEqual(self.files(), {Path("out/report.txt"): b"mine"})
 

@@ -105,7 +105,7 @@ class Played(Trajectories):
         path = self.write([0, 0.5, 1.0, 1.5])
         path.write_bytes(path.read_bytes()[:-50])
         folder, _ = self.play(path, "--seconds", "0.3")
-        self.check_warned(folder, "has 3 frames", "within frame 4", "cut off")
+        self.check_warned(folder, "has 3 complete frames", "within frame 4", "cut off")
 
     def test_a_recording_of_it_cannot_be_played_again(self):
         folder, _ = self.play(self.write([0, 1]), "--seconds", "0.2")

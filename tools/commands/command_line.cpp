@@ -324,10 +324,12 @@ std::string explain(const CLI::ParseError& error, const CLI::App& program,
     if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
         what = explain_extras(program, *program.get_subcommand(command));
     }
-    if (what == "a structure file is required") {
-        what += "; write it before options with several values (--without, --as)";
+    if (what == "structure is required") {
+        what =
+            "a structure file is required; write it before options with several values "
+            "(--without, --as)";
     }
-    if (what == "a scene is required") what += "; 'palpa' alone lists the scenes";
+    if (what == "scene is required") what = "a scene is required; 'palpa' alone lists the scenes";
     return fmt::format("palpa {}: {}; see palpa help {}", command, what, command);
 }
 
