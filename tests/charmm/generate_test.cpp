@@ -235,7 +235,7 @@ TEST_CASE("a segment without generated terms has those that its residues give",
 TEST_CASE("all that is wrong with a structure is told at once", "[charmm][generate]") {
     CHECK(error_of({{"P", "BEE", "1", "A"}, {"P", "LON", "2", "A"}, {"P", "BEE", "1", "A"}}) ==
           "s.pdb:1: no residue 'BEE' in a.rtf; did you mean 'BEA'?; a.rtf:39: residue 'LON' has a "
-          "lone pair, which is not supported; s.pdb:3: atom P BEE 1 A again");
+          "lone pair, which is not supported; s.pdb:3: atom P BEE 1 A is repeated");
     std::vector<AtomName> names = chain;
     names[0].atom = "D";
     names[3].atom = "K";

@@ -98,7 +98,8 @@ TEST_CASE("a condition that CHARMM alone knows is not true on one line, and no b
     CHECK(types_of("set n 0\nif n eq 0 return\n" + part("A")).empty());
     CHECK_THAT(error_of("if ?NUMNODE gt 1 then\n" + part("A") + "endif\n"),
                StartsWith("a.str:1: the variable of '?NUMNODE GT 1' has no value"));
-    CHECK_THAT(error_of("if other eq 1 then\nendif\n"), StartsWith("a.str:1: whether OTHER EQ 1"));
+    CHECK_THAT(error_of("if other eq 1 then\nendif\n"),
+               StartsWith("a.str:1: the variable of 'OTHER EQ 1' has no value"));
 }
 
 TEST_CASE("GOTO goes on behind its label, which comes later", "[charmm][script]") {

@@ -95,14 +95,15 @@ TEST_CASE("what is wrong with a solvation table is told with its line", "[charmm
     CHECK_THAT(error_of(head + "C,-1,0,0,0,0,3.5,2,a\n"), Contains("the volume is -1 Å^3"));
     CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,-2,a\n"), Contains("the radius is -2 Å"));
     CHECK_THAT(error_of(head + "C,1e5,0,0,0,0,3.5,2,a\n"), Contains("the volume is 100000 Å^3"));
-    CHECK_THAT(error_of(head + "C,1,0,-1e5,0,0,3.5,2,a\n"), Contains("an energy of -100000"));
+    CHECK_THAT(error_of(head + "C,1,0,-1e5,0,0,3.5,2,a\n"),
+               Contains("the energy is -100000 kcal/mol"));
     CHECK_THAT(error_of(head + "C,1,0,0,0,0,1e4,2,a\n"), Contains("lambda is 10000 Å"));
     CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,1e3,a\n"), Contains("the radius is 1000 Å"));
     CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,2,a,b\n"), Contains("'a,b' is not a valid source"));
     CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,2,\"a\n"), Contains("is not a valid source"));
     CHECK_THAT(error_of(head + ",1,0,0,0,0,3.5,2,a\n"), Contains("'' is not an atom type"));
     CHECK_THAT(error_of(head + "C,1,0,0,0,0,3.5,2,a\nc,1,0,0,0,0,3.5,2,a\n"),
-               Contains("t.csv:3: type C again, first on line 2"));
+               Contains("t.csv:3: type C is repeated, first on line 2"));
 }
 
 TEST_CASE("the program's table is EEF1-SB's", "[charmm][solvation]") {

@@ -131,7 +131,7 @@ TEST_CASE("with EEF1-SB ionic groups are neutral, and all of it is told", "[prep
     CHECK(system.parameters.nbfix.empty());
 
     const std::string report = system.report.to_text();
-    CHECK_THAT(report, Contains("EEF1-SB's implicit water, as asked"));
+    CHECK_THAT(report, Contains("implicit water, EEF1-SB, as requested"));
     CHECK_THAT(report, Contains("ARG neutral, not +1 e (1): A 3\n"));
     CHECK_THAT(report, Contains("GLU neutral, not -1 e (1): A 2\n"));
     CHECK_THAT(report, Contains("NTER neutral, not +1 e (1): A 1\n"));

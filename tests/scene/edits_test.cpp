@@ -385,7 +385,7 @@ TEST_CASE("a setting that no coupling has is refused with those that it has",
         {"clamp_N=nan", "expected a finite number"},
         // Against what the coupling has already.
         {"F_h2_N=0.5", "'coupling.F_h2_N' is 0.5 N; expected more than F_h1_N, 1 N"},
-        {"F_h1_N=4", "setting coupling.F_h1_N=4: 'coupling.F_h2_N' is 3; expected more than"},
+        {"F_h1_N=4", "setting coupling.F_h1_N=4: 'coupling.F_h2_N' is 3 N; expected more than"},
         {"mode", "expected KEY=VALUE"},
         {"=3", "'coupling.' is not a key"},
         {"mode=[", "the value is not valid TOML"},

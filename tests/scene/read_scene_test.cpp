@@ -403,7 +403,8 @@ TEST_CASE("fields that contradict each other are told at one of them", "[scene][
         {"[coupling]\nF_h2_N = 1.0", 18, 10,
          "'coupling.F_h2_N' is 1 N; expected more than F_h1_N, 1 N"},
         // The other of the two is a default: told at the table that should hold it.
-        {"[coupling]\nF_h1_N = 3.0", 17, 1, "'coupling.F_h2_N' is 3; expected more than F_h1_N, 3"},
+        {"[coupling]\nF_h1_N = 3.0", 17, 1,
+         "'coupling.F_h2_N' is 3 N; expected more than F_h1_N, 3 N"},
         {"[coupling]\nA_d_max = 1.0", 18, 11, "expected A_d_min, 5000000, or more"},
         {"[coupling]\nF_hi_nN = 0.03", 18, 11, "expected more than twice F_lo_pN, 20"},
         {"[coupling]\nfeel_pN = [300, 20]", 18, 11,
@@ -414,7 +415,7 @@ TEST_CASE("fields that contradict each other are told at one of them", "[scene][
         {"[hand]\ngrip = \"none\"", 17, 1, "nobody moves the handle"},
         {"[hand]\ngrip = \"none\"\nstroke = \"in-out\"", 19, 10, "nobody moves the handle"},
         {"[hand]\nstroke = \"path\"", 18, 10, "'hand.path' has no point"},
-        {"[hand]\npath = [[1, 0], [1, 2]]", 18, 8, "'hand.path' has the time 1 after 1"},
+        {"[hand]\npath = [[1, 0], [1, 2]]", 18, 8, "'hand.path' has the time 1 s after 1 s"},
     }));
     INFO(row.lines);
     CHECK_THAT(error_of(base + row.lines + "\n"),
@@ -810,13 +811,14 @@ TEST_CASE("what a step of a lesson cannot ask is refused where it stands", "[sce
           "has both a question and bounds"},
          {step + question + "why = [\"x\", \"y\"]\nright = 3\n",
           "is 3; expected the number of one of the 2 answers"},
-         {step + question + "why = [\"x\", \"y\", \"z\"]\n", "explains 3 of 2 answers"},
+         {step + question + "why = [\"x\", \"y\", \"z\"]\n", "has 3 texts for 2 answers"},
          {step + question, "the key 'lesson.one.question.why' is missing"},
          {step + "at_most = 1.0\nof = [\"all\"]\n",
           "has 1 selections, but distance_angstrom needs 0"},
          {step + "at_most = 1.0\nquantity = \"dihedral_deg\"\nof = [\"all\"]\n",
           "has 1 selections, but dihedral_deg needs 4"},
-         {step + "at_most = 1.0\noperator_path = [[2, 1], [1, 2]]\n", "has the time 1 after 2"}}));
+         {step + "at_most = 1.0\noperator_path = [[2, 1], [1, 2]]\n",
+          "has the time 1 s after 2 s"}}));
     INFO(row.lines);
 
     CHECK_THAT(error_of(base + row.lines), Contains(row.what));
