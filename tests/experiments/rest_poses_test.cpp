@@ -124,7 +124,7 @@ TEST_CASE("what is wrong with a file of poses is said with its line", "[experime
         {"spring", "\nspring", 7, "'' is not a kind of line"},
         {"0.5 0\n", "0.5 2\n", 8, "'2' does not say whether this move is a snap; expected 0 or 1"},
         {"0.5 0\n", "0.5\n", 8, "6 words follow 'move'"},
-        {"rest cutoff", "rest all", 10, "is of 'all'; expected 'cutoff': all first, then cutoff"},
+        {"rest cutoff", "rest all", 10, "names 'all'; expected 'cutoff': all first, then cutoff"},
         {"rest cutoff -1.25 4 5 6\n", "pose\nrest cutoff -1.25 4 5 6\n", 3,
          "the pose has 1 of two lines 'rest'"},
     };
