@@ -359,5 +359,5 @@ TEST_CASE("what is added while a session runs is recorded with its files",
     CHECK(read_text_file(recording / "inputs" / "3-dimer.crd") == water);
     std::filesystem::remove(recording / "inputs" / "3-dimer.crd");
     CHECK_THAT(test::load_error_of([&] { (void)play_again(recording); }),
-               Contains("3-dimer.crd is not there"));
+               Contains("3-dimer.crd; expected a file"));
 }

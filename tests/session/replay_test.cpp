@@ -193,7 +193,7 @@ TEST_CASE("a row of an older recording with a column more is reported",
     CHECK(check.first()->column == "number of columns");
 }
 
-TEST_CASE("of a newer minor version unknown columns are left out; a newer major one is refused",
+TEST_CASE("of a newer minor version unknown columns are left out, and a newer major one is refused",
           "[session][replay][format]") {
     const std::vector<ServoTick> ticks = some_ticks(3);
     std::string trace = trace_header() + ",heat_K\n";

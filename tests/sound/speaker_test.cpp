@@ -108,7 +108,7 @@ TEST_CASE("an output that goes away is told, and ends quietly", "[sound]") {
 TEST_CASE("without a sound output that is said in a sentence", "[sound]") {
     for (int attempt = 0; attempt < 2; ++attempt) {  // a failure leaves nothing behind
         setenv("SDL_AUDIODRIVER", "none of that name", 1);
-        CHECK_THROWS_WITH(Speaker(), Catch::Matchers::StartsWith("no sound output ("));
+        CHECK_THROWS_WITH(Speaker(), Catch::Matchers::StartsWith("no sound output was found ("));
         play_into("/nowhere/played.raw");
         CHECK_THROWS_WITH(Speaker(),
                           Catch::Matchers::StartsWith("the sound output cannot be opened ("));

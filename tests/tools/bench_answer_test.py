@@ -125,7 +125,7 @@ class BenchAnswer(unittest.TestCase):
     def test_files_are_replaced_on_demand_only(self):
         before = self.poses.read_text(), self.picture.read_text()
         self.assert_refused("--save-poses", self.poses, told="poses.txt: already exists")
-        self.assert_refused("--plot", self.picture, told="answer.svg: is there already")
+        self.assert_refused("--plot", self.picture, told="answer.svg: already exists")
         mine = Path(self.folder.name) / "mine.txt"
         mine.write_text("mine\n")
         for option in "--save-poses", "--plot":

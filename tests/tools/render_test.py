@@ -281,12 +281,12 @@ class Render(unittest.TestCase):
         self.assertLess(len(short), len(self.differing(plain, self.pixels(*played, "--trail", "2")[0])))
 
     def test_a_measure_that_is_none_is_refused(self):
-        for measure, expected in (("name OH2", "--measure: 'name OH2' has 1 selection; expected two, three or four"),
+        for measure, expected in (("name OH2", "--measure: 'name OH2' has 1 selection; expected two for a distance, three"),
                                   ("all; nme OH2", "--measure, column 6")):
             with self.subTest(measure=measure):
                 self.assert_bad_input(self.render("-o", self.image, "--measure", measure), expected)
         _, said = self.pixels("--measure", "name OH2; name XX")
-        self.assertIn("2nd of view.measure = 'name OH2; name XX' selects no atoms", said)
+        self.assertIn("no atom matches 2nd of view.measure = 'name OH2; name XX'", said)
 
     def test_clip_leaves_out_what_is_in_front(self):
         # From the left the fixed water stands before the moved one.

@@ -163,7 +163,7 @@ class Study(unittest.TestCase):
 
     def test_bad_input_is_one_line(self):
         self.assert_bad_input("expected one of 1, 2", WATER, "--operators", 1, "--modes", "7")
-        self.assert_bad_input("every mode once", WATER, "--operators", 1, "--modes", "2,4,2")
+        self.assert_bad_input("each mode once", WATER, "--operators", 1, "--modes", "2,4,2")
         self.assert_bad_input("did you mean 'careful'", WATER, "--operators", 1, "--operator",
                               "carefull")
         self.assert_bad_input("confined to a line", ROOT / "scenes" / "hiv", "--operators", 1)

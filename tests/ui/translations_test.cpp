@@ -86,8 +86,8 @@ TEST_CASE("the help is German, and letters of keys stay", "[ui][translate]") {
         return line == lines.end() ? std::string() : line->does;
     };
     CHECK(does("P") == "Pause, weiter");
-    CHECK(does("Strg+S") == "Szene wie eingestellt in neue Datei speichern");
-    CHECK(does("Strg+Umschalt+Z, Strg+Y") == "wiederholen");
+    CHECK(does("Strg+S") == "Szene mit den jetzigen Einstellungen in neue Datei speichern");
+    CHECK(does("Strg+Umschalt+Z, Strg+Y") == "wiederherstellen");
 }
 
 TEST_CASE("who chooses a language from the list has its words at once", "[ui][translate]") {

@@ -270,7 +270,8 @@ TEST_CASE("colours stand for numbers of the world", "[view][colours]") {
     const AtomRange held = held_range(world, first_hand(world));
     CHECK(colours(Colouring::Force)[held.first] == colours(Colouring::Element)[held.first]);
     CHECK(colours(Colouring::Activity)[7] == find_legend(world, Colouring::Activity).at(0).colour);
-    CHECK_THAT(find_legend(world, Colouring::Activity).at(0).text, Contains("nothing"));
+    CHECK_THAT(find_legend(world, Colouring::Activity).at(0).text,
+               Contains("no molecule has joints that can turn"));
 }
 
 TEST_CASE("what pushes the hand is what the pairs say", "[view][colours]") {

@@ -167,8 +167,9 @@ TEST_CASE("a measure that is none is refused, with what would be right", "[view]
         settings.marks.measures = {text};
         return load_error_of([&] { (void)build_frame(world, settings); });
     };
-    CHECK_THAT(error("name OH2"), Contains("view.measure") && Contains("'name OH2'") &&
-                                      Contains("1 selection") && Contains("two, three or four"));
+    CHECK_THAT(error("name OH2"),
+               Contains("view.measure") && Contains("'name OH2'") && Contains("1 selection") &&
+                   Contains("two for a distance, three for an angle or four for a dihedral"));
     CHECK_THAT(error("all; all; all; all; all"), Contains("5 selections"));
     CHECK_THAT(error("all; protien"), Contains("view.measure, column 6") && Contains("protein"));
     CHECK_THAT(error("all;"), Contains("view.measure, column 5"));
