@@ -923,7 +923,7 @@ class Session(unittest.TestCase):
     def test_a_device_that_is_gone_is_said_and_not_forgotten(self):
         chosen = self.folder / "palpa" / "preferences.toml"
         chosen.parent.mkdir()
-        for text, told in (("device = 'omni'\n", "omni, which led last, cannot be used now"),
+        for text, told in (("device = 'omni'\n", "omni, the device used last, cannot be used now"),
                            ("device = 'omni\n", "preferences.toml:1:")):
             with self.subTest(text=text), Display() as display:
                 chosen.write_text(text)
