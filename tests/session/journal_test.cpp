@@ -162,7 +162,7 @@ TEST_CASE("a journal has the forces of clients, within their bounds", "[session]
     CHECK_THAT(error_of("c 1 {\"pull\":[],\"of\":1e99}\n"), Contains("'of' is"));
 }
 
-TEST_CASE("a journal states its version; of the one before edits have old names",
+TEST_CASE("a journal states its version, and of the one before edits have old names",
           "[session][journal][format]") {
     const std::string edit =
         "c 1 {\"edit\":\"[[edits]]\\nat_s = 0\\nappearance = { molecule = \\\"a\\\", colouring = "

@@ -167,7 +167,7 @@ class Study(unittest.TestCase):
         self.assert_bad_input("did you mean 'careful'", WATER, "--operators", 1, "--operator",
                               "carefull")
         self.assert_bad_input("confined to a line", ROOT / "scenes" / "hiv", "--operators", 1)
-        self.assert_bad_input("no hand", WATER, "--operators", 1, "--hand", "none", "--set",
+        self.assert_bad_input("nobody moves the handle", WATER, "--operators", 1, "--hand", "none", "--set",
                               "hand.stroke=hold")
         self.assert_bad_input("--operators", WATER, "--operators", 0)
         self.assert_bad_input("did you mean 'stiffer'", WATER, "--operators", 1,
