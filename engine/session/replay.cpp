@@ -71,9 +71,10 @@ TraceCheck::TraceCheck(const std::filesystem::path& folder, std::uint64_t ticks,
 // Those that recording and program have.
 void TraceCheck::choose_columns(const std::filesystem::path& folder, std::size_t hands) {
     const TextPlace place{(folder / "trace.csv").string(), 1};
-    const std::string header = trace_header(hands, true);
-    const std::vector<std::string_view> ours = split_row(header),
-                                        theirs = std::exchange(columns_, {});
+    const std::vector<std::string_view> theirs = std::exchange(columns_, {});
+    relaxes_ = std::ranges::find(theirs, "force_error_estimate_nN") != theirs.end();
+    const std::string header = trace_header(hands, relaxes_);
+    const std::vector<std::string_view> ours = split_row(header);
     std::vector<std::string_view> unknown, lacking;
     for (std::size_t i = 0; i < theirs.size(); ++i) {
         const auto found = std::ranges::find(ours, theirs[i]);
@@ -101,7 +102,6 @@ void TraceCheck::choose_columns(const std::filesystem::path& folder, std::size_t
         }
         lacking.push_back(column);
     }
-    relaxes_ = true;
     if (!unknown.empty())
         notes_.push_back(fmt::format("{}: not compared, since this program does not know them: {}",
                                      place.file,

@@ -189,7 +189,7 @@ TEST_CASE("a journal states its version, and of the one before edits have old na
     CHECK_THAT(error_of_version("2.7", "q 1\n"),
                Contains("'q' is no kind of line") && Contains("a newer Palpa, since the journal"));
     CHECK_THAT(error_of_version("3.0", "p 1\n"),
-               Contains("journal.txt:1: journal format 3.0 is newer than this program"));
+               Contains("journal.txt:1:1: journal format 3.0 is newer than this program"));
     CHECK_THAT(error_of_version("two", "p 1\n"),
                Contains("is no journal; expected # Palpa journal 2.0"));
 }
