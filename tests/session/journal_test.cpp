@@ -187,11 +187,11 @@ TEST_CASE("a journal states its version, and of the one before edits have old na
     REQUIRE(newer.notes.size() == 1);
     CHECK_THAT(newer.notes[0], Contains("journal format 2.7 is newer than 2.0"));
     CHECK_THAT(error_of_version("2.7", "q 1\n"),
-               Contains("'q' is no kind of line") && Contains("a newer Palpa, since the journal"));
+               Contains("'q' is not a kind of line") && Contains("a newer Palpa, since the journal"));
     CHECK_THAT(error_of_version("3.0", "p 1\n"),
                Contains("journal.txt:1:1: journal format 3.0 is newer than this program"));
     CHECK_THAT(error_of_version("two", "p 1\n"),
-               Contains("is no journal; expected # Palpa journal 2.0"));
+               Contains("is not a journal; expected # Palpa journal 2.0"));
 }
 
 TEST_CASE("what a journal cannot hold is refused with its line", "[session][journal]") {
