@@ -94,6 +94,8 @@ public:
             HandPose pose;
             if (servos_.exchange(slot).hand.read(pose)) poses_[slot].push_back(pose);
         }
+        // What happened after the last tick, so that the world ends as it did.
+        while (tick + 1 == journal_.ticks.size() && can_play_event()) play_event();
         return servos_.ticks();
     }
 
@@ -101,6 +103,18 @@ public:
     const LiveSimulation& simulation() const noexcept { return simulation_; }
 
 private:
+    // There is one, and its poses are known, which those of a journal that was cut off may not be.
+    bool can_play_event() const {
+        if (next_event_ == journal_.events.size()) return false;
+        const std::vector<std::uint64_t>& needed = journal_.events[next_event_].poses;
+        for (std::size_t slot = 0; slot < poses_.size(); ++slot) {
+            const bool is_known =
+                !poses_[slot].empty() && needed[slot] <= poses_[slot].back().number;
+            if (needed[slot] > 0 && !is_known) return false;
+        }
+        return true;
+    }
+
     void play_event() {
         if (next_event_ == journal_.events.size()) fail("uses a result that no step has produced");
         const PlayedEvent& played = journal_.events[next_event_++];
