@@ -9,13 +9,13 @@
 namespace palpa {
 
 struct DeviceMaker {
-    std::string_view name;      // name for --device
-    std::string_view summary;   // short description
-    bool is_emulated = false;   // always available; runs on the servo's clock
-    bool is_led = false;        // moved by the window's mouse and keys, if there is a window
-    bool needs_window = false;  // cannot be used without a window
-    std::string_view file =
-        {};  // placeholder of the file for --device NAME:FILE; empty for devices without a file
+    std::string_view name;       // name for --device
+    std::string_view summary;    // short description
+    bool is_emulated = false;    // always available; runs on the servo's clock
+    bool is_led = false;         // moved by the window's mouse and keys, if there is a window
+    bool needs_window = false;   // cannot be used without a window
+    std::string_view file = {};  // name in the help of what follows in --device NAME:FILE, such as
+                                 // "FOLDER"; empty for devices without a file
     // Quick check whether the device is connected; null if that cannot be checked.
     bool (*is_there)(const DeviceRequest& request) = nullptr;
     // Checks every layer in order and opens the device if possible. Sends no force. Does not throw

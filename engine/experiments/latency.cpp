@@ -87,15 +87,15 @@ WakeUps measure_wake_ups(int ticks, bool asks_for_real_time) {
     return found;
 }
 
-std::vector<LatenessClass> sort_into_classes(const std::vector<double>& late_us) {
-    std::vector<LatenessClass> classes{{1, 0}};
+std::vector<LatencyBin> bin_latencies(const std::vector<double>& late_us) {
+    std::vector<LatencyBin> bins{{1, 0}};
     for (const double late : late_us) {
         std::size_t at = 0;
         for (double below = 1; late >= below; below *= 2) ++at;
-        while (classes.size() <= at) classes.push_back({2 * classes.back().below_us, 0});
-        ++classes[at].ticks;
+        while (bins.size() <= at) bins.push_back({2 * bins.back().below_us, 0});
+        ++bins[at].ticks;
     }
-    return classes;
+    return bins;
 }
 
 }  // namespace palpa

@@ -54,11 +54,11 @@ struct WakeUps {
 // asks for.
 WakeUps measure_wake_ups(int ticks, bool asks_for_real_time);
 
-// A histogram: classes of a factor of two, from below 1 us on, and how many ticks each has.
-struct LatenessClass {
+// A histogram: bins that double in width, the first below 1 us, and how many ticks each has.
+struct LatencyBin {
     double below_us = 0;
     std::uint64_t ticks = 0;
 };
-std::vector<LatenessClass> sort_into_classes(const std::vector<double>& late_us);
+std::vector<LatencyBin> bin_latencies(const std::vector<double>& late_us);
 
 }  // namespace palpa

@@ -64,7 +64,7 @@ double find_static_work(const World& world, double from, double to) {
     return sum * width * units::metre_per_angstrom;
 }
 
-// What is taken anew may move in space, where the law of the axis is not its own.
+// A molecule taken by an edit may move in space, where the force law of one axis does not apply.
 bool is_on_axis(const ServoTick& tick) noexcept { return tick.contact.active_freedom <= 1; }
 
 // Stretches of a run in which the whole force of the law came through, each against the static law

@@ -94,7 +94,7 @@ public:
             HandPose pose;
             if (servos_.exchange(slot).hand.read(pose)) poses_[slot].push_back(pose);
         }
-        // What happened after the last tick, so that the world ends as it did.
+        // Events after the last tick, so that the world ends as in the recorded session.
         while (tick + 1 == journal_.ticks.size() && can_play_event()) play_event();
         return servos_.ticks();
     }

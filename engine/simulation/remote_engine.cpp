@@ -9,6 +9,7 @@
 #include "formats/index_file.h"
 #include "formats/psf.h"
 #include "molecule/element.h"
+#include "scene/find_scene.h"
 #include "simulation/held.h"
 #include "simulation/resources.h"
 #include "simulation/sources.h"
@@ -111,7 +112,7 @@ struct EngineFile {
 };
 
 EngineFile read_engine_file(const std::filesystem::path& path) {
-    if (is_psf(path)) {
+    if (is_topology(path)) {
         Connectivity connectivity = read_psf(path);
         return {std::move(connectivity.names), std::move(connectivity.mass), true};
     }
@@ -128,7 +129,7 @@ EngineAtoms match_names(const SceneDescription& scene, const AtomTable& table) {
     const bool has_masses =
         !file.masses.empty() &&
         std::ranges::none_of(scene.molecules, [](const MoleculeDescription& molecule) {
-            return molecule.topology.empty() && !is_psf(molecule.structure);
+            return molecule.topology.empty() && !is_topology(molecule.structure);
         });
     for (std::size_t i = 0; i < table.size(); ++i) {
         const AtomName& name = table.names[i];
@@ -430,7 +431,7 @@ bool take_newest_frame(World& world) {
 bool lacks_coordinates(const SceneDescription& scene) {
     return scene.engine &&
            std::ranges::any_of(scene.molecules, [](const MoleculeDescription& molecule) {
-               return is_psf(molecule.structure);
+               return is_topology(molecule.structure);
            });
 }
 

@@ -9,6 +9,7 @@
 #include "formats/structure.h"
 #include "molecule/alternatives.h"
 #include "prepare/build_positions.h"
+#include "scene/find_scene.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -110,14 +111,10 @@ Source find_source(const std::filesystem::path& structure, const std::filesystem
     return source;
 }
 
-bool is_psf(const std::filesystem::path& path) {
-    return upper_case(path.extension().string()) == ".PSF";
-}
-
 Source find_engine_source(const std::filesystem::path& structure,
                           const std::filesystem::path& topology, const std::string& segment,
                           SourceFiles& files) {
-    if (!is_psf(structure)) return find_source(structure, topology, segment, files);
+    if (!is_topology(structure)) return find_source(structure, topology, segment, files);
     Source source;
     source.connectivity =
         find_or_read(files.connectivities, topology.empty() ? structure : topology, read_psf);

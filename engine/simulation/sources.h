@@ -30,9 +30,6 @@ Source find_engine_source(const std::filesystem::path& structure,
                           const std::filesystem::path& topology, const std::string& segment,
                           SourceFiles& files);
 
-// Judged by the file name.
-bool is_psf(const std::filesystem::path& path);
-
 // The following functions make a segment `name` that contains this molecule alone.
 
 // One segment of the files; an empty name: the only one. Throws LoadError as find_source does, and,

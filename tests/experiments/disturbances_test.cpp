@@ -10,7 +10,7 @@ using namespace palpa;
 
 namespace {
 
-// Stands where it is told to.
+// A device whose handle the test places.
 class Handle final : public Device {
 public:
     const DeviceSpec& spec() const noexcept override { return spec_; }

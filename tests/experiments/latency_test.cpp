@@ -6,15 +6,15 @@
 
 using namespace palpa;
 
-TEST_CASE("lateness is sorted into classes of a factor of two", "[experiments][latency]") {
-    const std::vector<LatenessClass> classes = sort_into_classes({0, 0.99, 1, 1.5, 2, 7.9, 8});
+TEST_CASE("latencies fall into bins that double in width", "[experiments][latency]") {
+    const std::vector<LatencyBin> bins = bin_latencies({0, 0.99, 1, 1.5, 2, 7.9, 8});
 
-    REQUIRE(classes.size() == 5);
+    REQUIRE(bins.size() == 5);
     const std::vector<double> below_us{1, 2, 4, 8, 16};
     const std::vector<std::uint64_t> ticks{2, 2, 1, 1, 1};
-    for (std::size_t i = 0; i < classes.size(); ++i) {
-        CHECK(classes[i].below_us == below_us[i]);
-        CHECK(classes[i].ticks == ticks[i]);
+    for (std::size_t i = 0; i < bins.size(); ++i) {
+        CHECK(bins[i].below_us == below_us[i]);
+        CHECK(bins[i].ticks == ticks[i]);
     }
 }
 

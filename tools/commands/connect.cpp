@@ -8,6 +8,7 @@
 #include "formats/structure.h"
 #include "molecule/alternatives.h"
 #include "scene/check_scene.h"
+#include "scene/find_scene.h"
 #include "scene/read_scene.h"
 #include "scene/write_scene.h"
 #include "session/recording.h"
@@ -69,7 +70,7 @@ void check_topology_name(const fs::path& path) {
 }
 
 std::vector<AtomName> read_names(const fs::path& path) {
-    if (is_psf(path)) return read_psf(path).names;
+    if (is_topology(path)) return read_psf(path).names;
     check_topology_name(path);
     const Structure structure = read_structure(path);
     refuse_alternatives(structure);
@@ -175,7 +176,7 @@ Hold find_hold(const std::string& hold, const std::vector<AtomName>& names,
 }
 
 SceneDescription build_scene(const ConnectOptions& options) {
-    const bool has_psf = is_psf(options.topology);
+    const bool has_psf = is_topology(options.topology);
     const std::vector<AtomName> names = read_names(options.topology);
     const std::vector<Part> parts = find_parts(options.topology, names);
     SceneDescription scene;

@@ -61,7 +61,7 @@ namespace {
 
 nlohmann::ordered_json as_json(const char* priority, const WakeUps& found) {
     nlohmann::ordered_json classes = nlohmann::ordered_json::array();
-    for (const LatenessClass& each : sort_into_classes(found.late_us))
+    for (const LatencyBin& each : bin_latencies(found.late_us))
         classes.push_back({{"below_us", each.below_us}, {"ticks", each.ticks}});
     return {{"priority", priority},
             {"granted", found.is_real_time},
