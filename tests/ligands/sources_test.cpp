@@ -55,7 +55,7 @@ TEST_CASE("places of atoms alone say what a drug is", "[ligands][sources]") {
 
     const FoundLigand found = find_ligand({*graph, {}, {}, {}});
 
-    CHECK(found.source.find("places") != std::string::npos);
+    CHECK(found.source.find("positions") != std::string::npos);
     CHECK(found.graph.size() == given.atoms);
     CHECK(count_element(found.graph, "H") == given.hydrogens);
     CHECK(total_charge(found.graph) == given.charge);

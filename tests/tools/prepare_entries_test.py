@@ -38,7 +38,7 @@ class PrepareEntries(unittest.TestCase):
         for row in self.table.values():
             if row["outcome"] != "runs":
                 self.assertEqual(row["outcome"], "exit code 2", row)
-                self.assertRegex(row["what was decided"], "no topology for residue|no structure but a dictionary")
+                self.assertRegex(row["what was decided"], "no topology for residue|is a chemical component .*, not a structure")
 
     def test_quick_ones_are_as_the_table_says(self):
         quick = [entry for entry in self.entries if float(self.table[entry.name]["seconds"]) < QUICK_S]
