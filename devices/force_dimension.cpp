@@ -26,7 +26,7 @@ constexpr double farthest_m = 1;
 constexpr std::array usb_ids{UsbId{0x1451, 0x0301}, UsbId{0x1451, 0x0402}, UsbId{0x1451, 0x0403},
                              UsbId{0x1451, 0x040c}, UsbId{0x0403, 0xcb48}};
 
-constexpr const char* library_remedy =
+constexpr const char* dhd_remedy =
     "install the Force Dimension SDK (www.forcedimension.com, for Linux or Windows), put "
     "libdhd.so.3 where the system finds it, for example into /usr/local/lib, then 'sudo "
     "ldconfig'; or set PALPA_FORCE_DIMENSION to the path of libdhd.so.3 or dhd64.dll";
@@ -101,7 +101,7 @@ std::string last_error(const dhd::Library& library) {
 DeviceCheck check_library(const dhd::LibrarySearch& search) {
     if (search.is_found) return {"library", CheckOutcome::Ok, search.path, ""};
     return {"library", CheckOutcome::Failed,
-            fmt::format("none could be loaded: {}", fmt::join(search.tried, "; ")), library_remedy};
+            fmt::format("none could be loaded: {}", fmt::join(search.tried, "; ")), dhd_remedy};
 }
 
 DeviceCheck check_symbols(const dhd::LibrarySearch& search) {

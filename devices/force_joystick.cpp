@@ -9,7 +9,6 @@
 namespace palpa {
 namespace {
 
-constexpr std::uint16_t generic_desktop_page = 1, joystick = 4, game_pad = 5;
 constexpr HidUsage x_axis = 0x010030, y_axis = 0x010031, first_button = 0x090001;
 
 // Page 0x0F. Reports and other groups of fields:
@@ -47,8 +46,8 @@ constexpr std::array needed{
 };
 
 bool is_stick(const HidPlace& place) noexcept {
-    return place.usage_page == generic_desktop_page &&
-           (place.usage == joystick || place.usage == game_pad);
+    return place.usage_page == hid_usage::generic_desktop_page &&
+           (place.usage == hid_usage::joystick || place.usage == hid_usage::game_pad);
 }
 
 // A report that is filled in field by field: the one with a field of that usage `inside`.

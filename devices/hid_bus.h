@@ -14,6 +14,12 @@ struct hid_device_;
 
 namespace palpa {
 
+// Usages of devices that are played with, of the generic desktop page (HID Usage Tables 1.5, 4.1).
+namespace hid_usage {
+inline constexpr std::uint16_t generic_desktop_page = 1;
+inline constexpr std::uint16_t joystick = 4, game_pad = 5, multi_axis_controller = 8;
+}  // namespace hid_usage
+
 // One usage of one interface of a device that is plugged in.
 struct HidPlace {
     std::string path;  // "/dev/hidraw3"

@@ -16,9 +16,9 @@ namespace palpa {
 namespace {
 
 constexpr double metre_per_mm = 1e-3;
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+constexpr double unset = std::numeric_limits<double>::quiet_NaN();
 // Further from its base no stylus gets; a reading that says so is none.
-constexpr double farthest_m = 1;
+constexpr double farthest_stylus_m = 1;
 // The library sorts its callbacks by it; the middle of its range.
 constexpr unsigned short priority = 0x7FFF;
 // While the stylus has to go into its inkwell, the library is asked so often whether it is there.
@@ -31,7 +31,7 @@ constexpr double omni_peak_newton = 3.3, omni_continuous_newton = 0.88;
 // and the oldest ones do not show.
 constexpr std::array touch_ids{UsbId{0x2988, 0x0302}, UsbId{0x0301, 0x2988}, UsbId{0x2988, 0x0304}};
 
-constexpr const char* library_remedy =
+constexpr const char* open_haptics_remedy =
     "install the Touch driver and OpenHaptics for Linux (Developer Edition 3.4) from 3D Systems, "
     "then 'sudo ldconfig'; or set PALPA_OPENHAPTICS to the path of libHD.so";
 
@@ -96,9 +96,9 @@ hd::Handle find_device(const hd::Library& library, const std::string& wanted, hd
 // No number where the library does not know.
 double query(const hd::Library& library, hd::Code parameter) {
     std::array<double, 16> values{};  // more than any parameter has
-    values.fill(no_value);
+    values.fill(unset);
     library.get_doublev(parameter, values.data());
-    return first_error(library) == hd::success ? values[0] : no_value;
+    return first_error(library) == hd::success ? values[0] : unset;
 }
 
 std::string text_of(const hd::Library& library, hd::Code parameter) {
@@ -123,7 +123,7 @@ Box query_box(const hd::Library& library) {
     const Vec3 half_m = 0.5 * metre_per_mm * (high - low);
     Box box;
     if (!is_known || !half_m.allFinite() || half_m.minCoeff() <= 0) return box;
-    if (half_m.maxCoeff() > farthest_m) return box;
+    if (half_m.maxCoeff() > farthest_stylus_m) return box;
     return {true, 0.5 * metre_per_mm * (high + low), half_m};
 }
 
@@ -140,7 +140,8 @@ int query_calibration_style(const hd::Library& library) {
 DeviceCheck check_library(const hd::LibrarySearch& search) {
     if (search.is_found) return {"library", CheckOutcome::Ok, search.path, ""};
     return {"library", CheckOutcome::Failed,
-            fmt::format("none could be loaded: {}", fmt::join(search.tried, "; ")), library_remedy};
+            fmt::format("none could be loaded: {}", fmt::join(search.tried, "; ")),
+            open_haptics_remedy};
 }
 
 DeviceCheck check_symbols(const hd::LibrarySearch& search) {
@@ -159,7 +160,7 @@ std::vector<FoundDevice> find_on_bus(const std::filesystem::path& root) {
 }
 
 // Neither is a reason to give up: a Touch with Ethernet shows in none of these places.
-void check_system(const std::filesystem::path& root, std::vector<DeviceCheck>& checks) {
+void check_touch_on_bus(const std::filesystem::path& root, std::vector<DeviceCheck>& checks) {
     const std::vector<FoundDevice> found = find_on_bus(root);
     if (found.empty()) {
         checks.push_back(
@@ -389,7 +390,7 @@ bool OpenHaptics::update_calibration() noexcept {
 
 DeviceReading OpenHaptics::take_reading() noexcept {
     std::array<double, 16> m{};
-    m.fill(no_value);
+    m.fill(unset);
     int buttons = 0;
     library_.get_doublev(hd::current_transform, m.data());
     library_.get_integerv(hd::current_buttons, &buttons);
@@ -402,7 +403,7 @@ DeviceReading OpenHaptics::take_reading() noexcept {
     constexpr double rounding = 1e-2;
     const bool is_turn =
         (axes * axes.transpose() - Mat3::Identity()).norm() < rounding && axes.determinant() > 0;
-    if (!place_m.allFinite() || place_m.norm() > farthest_m || !is_turn) return reading;
+    if (!place_m.allFinite() || place_m.norm() > farthest_stylus_m || !is_turn) return reading;
     reading.position_m = place_m - centre_m_;
     reading.orientation = Quat(axes).normalized();
     reading.valid = true;
@@ -454,12 +455,12 @@ OpenedDevice open_haptics(const OpenHapticsSettings& settings, const DeviceReque
     const hd::LibrarySearch search = hd::find_library(settings.library);
     const bool is_whole = search.is_found && search.missing.empty();
     // The reason is the last check; that the device was seen stands before it.
-    if (!is_whole) check_system(request.system_root, checks);
+    if (!is_whole) check_touch_on_bus(request.system_root, checks);
     checks.push_back(check_library(search));
     if (!search.is_found) return opened;
     checks.push_back(check_symbols(search));
     if (!is_whole) return opened;
-    check_system(request.system_root, checks);
+    check_touch_on_bus(request.system_root, checks);
     const hd::Library& library = search.library;
     if (open_one.load()) {
         checks.push_back({"init", CheckOutcome::Failed, "this program has a device open already",

@@ -14,7 +14,6 @@ constexpr std::uint16_t sony = 0x054c;
 constexpr std::array<std::uint16_t, 2> dualsenses{0x0ce6, 0x0df2};  // the second is the Edge
 constexpr std::array<std::uint16_t, 2> dualshocks{0x05c4, 0x09cc};
 // Its touchpad and sensors are inputs of their own elsewhere; the pad is this one.
-constexpr std::uint16_t generic_desktop_page = 1, game_pad = 5;
 
 constexpr std::uint8_t crc_in = 0xa1, crc_out = 0xa2;
 constexpr std::size_t crc_bytes = 4;
@@ -86,8 +85,8 @@ std::string_view SonyPadProtocol::name() const noexcept {
 
 bool SonyPadProtocol::is_ours(const HidPlace& place) const noexcept {
     const auto& products = model_ == SonyModel::DualSense ? dualsenses : dualshocks;
-    return place.id.vendor == sony && place.usage_page == generic_desktop_page &&
-           place.usage == game_pad &&
+    return place.id.vendor == sony && place.usage_page == hid_usage::generic_desktop_page &&
+           place.usage == hid_usage::game_pad &&
            std::find(products.begin(), products.end(), place.id.product) != products.end();
 }
 

@@ -17,7 +17,6 @@ constexpr std::array<std::uint16_t, 10> new_products{0xc62e, 0xc62f, 0xc631, 0xc
 constexpr std::array<std::uint16_t, 12> flat_products{
     0xc62c, 0xc641, 0xc650, 0xc651, 0xc654, 0xc655, 0xc656, 0xc657, 0xc658, 0xc664, 0xc665, 0xc668};
 // A receiver shows interfaces of several kinds: what speaks is the one with this usage.
-constexpr std::uint16_t generic_desktop = 1, multi_axis_controller = 8;
 
 constexpr std::size_t three_words = 7, six_words = 13, least_buttons = 2;  // bytes with the number
 
@@ -45,7 +44,8 @@ bool SpaceMouseProtocol::is_ours(const HidPlace& place) const noexcept {
     const bool is_known =
         (place.id.vendor == old_vendor && contains(old_products, place.id.product)) ||
         (place.id.vendor == new_vendor && contains(new_products, place.id.product));
-    return is_known && place.usage_page == generic_desktop && place.usage == multi_axis_controller;
+    return is_known && place.usage_page == hid_usage::generic_desktop_page &&
+           place.usage == hid_usage::multi_axis_controller;
 }
 
 std::string SpaceMouseProtocol::why_not(const HidPlace& place) const {

@@ -3,6 +3,7 @@
 #include "core/load_error.h"
 #include "formats/gro.h"
 #include "inputs/molecules.h"
+#include "math/angles.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,7 +12,6 @@
 #include <cstddef>
 #include <iterator>
 #include <map>
-#include <numbers>
 #include <set>
 #include <string>
 #include <string_view>
@@ -21,7 +21,6 @@ namespace {
 
 constexpr double kj = 1 / units::kcal_per_kj;  // per kcal
 constexpr double nm = 1 / units::angstrom_per_nm;
-constexpr double degree = 180 / std::numbers::pi;
 // kcal Å/mol/e^2: by CODATA 2018, as GROMACS has it, 138.935457644382 kJ nm/mol/e^2.
 constexpr double gromacs_coulomb_constant = 138.935457644382 / kj / nm;
 
@@ -120,21 +119,21 @@ std::string format_bonded(const RunSystem& system, const MoleculeTerms& terms) {
     for (const Angle& t : terms.angles) {
         const auto with = urey_bradley_of.find({std::min(t.a, t.c), std::max(t.a, t.c)});
         if (with == urey_bradley_of.end()) {
-            rows += row({t.a, t.b, t.c}, 1, t.theta0 * degree, 2 * t.k * kj);
+            rows += row({t.a, t.b, t.c}, 1, t.theta0 * degrees_per_radian, 2 * t.k * kj);
             continue;
         }
-        rows += row({t.a, t.b, t.c}, 5, t.theta0 * degree, 2 * t.k * kj, with->second->s0 * nm,
-                    2 * with->second->k * kj / nm / nm);
+        rows += row({t.a, t.b, t.c}, 5, t.theta0 * degrees_per_radian, 2 * t.k * kj,
+                    with->second->s0 * nm, 2 * with->second->k * kj / nm / nm);
         urey_bradley_of.erase(with);
     }
     add_section(text, "angles", rows);
     rows.clear();
     for (const Dihedral& t : terms.dihedrals) {
-        rows += row({t.a, t.b, t.c, t.d}, 9, t.phase * degree, t.k * kj,
+        rows += row({t.a, t.b, t.c, t.d}, 9, t.phase * degrees_per_radian, t.k * kj,
                     static_cast<double>(t.multiplicity));
     }
     for (const Improper& t : terms.impropers)
-        rows += row({t.a, t.b, t.c, t.d}, 2, t.psi0 * degree, 2 * t.k * kj);
+        rows += row({t.a, t.b, t.c, t.d}, 2, t.psi0 * degrees_per_radian, 2 * t.k * kj);
     add_section(text, "dihedrals", rows);
     rows.clear();
     for (const CmapTerm& t : terms.cmap_terms) {

@@ -2,6 +2,7 @@
 
 #include "core/load_error.h"
 #include "inputs/molecules.h"
+#include "math/angles.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,7 +11,6 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
-#include <numbers>
 #include <set>
 #include <string>
 #include <string_view>
@@ -20,7 +20,6 @@
 namespace palpa {
 namespace {
 
-constexpr double degree_of_radian = 180 / std::numbers::pi;
 // kcal Å/mol/e^2: LAMMPS's own of its units "real", and that of its styles charmmfsw.
 constexpr double lammps_coulomb_constant = 332.06371, charmmfsw_coulomb_constant = 332.0716;
 // Of fix cmap.
@@ -101,7 +100,7 @@ void add_angles(const RunSystem& system, const std::vector<bool>& is_rigid_water
             urey_bradley_of.erase(with);
         }
         const int type = terms.angles.add(
-            fmt::format("{:.12g} {:.12g} {:.12g} {:.12g}{}", t.k, t.theta0 * degree_of_radian, k,
+            fmt::format("{:.12g} {:.12g} {:.12g} {:.12g}{}", t.k, t.theta0 * degrees_per_radian, k,
                         s0, is_rigid_water[t.b] ? " # of water" : ""),
             {t.a, t.b, t.c});
         if (is_rigid_water[t.b]) terms.rigid_angles.insert(type);
@@ -124,7 +123,7 @@ void add_dihedrals(const RunSystem& system, Terms& terms) {
     std::set<std::array<std::uint32_t, 2>> left(topology.exclusions.pairs14.begin(),
                                                 topology.exclusions.pairs14.end());
     for (const Dihedral& t : topology.dihedrals) {
-        const double phase = t.phase * degree_of_radian, whole = std::round(phase);
+        const double phase = t.phase * degrees_per_radian, whole = std::round(phase);
         if (std::abs(phase - whole) > 1e-6) {
             refuse(system, t.a,
                    fmt::format("dihedral has a phase of {:.6g} degrees; expected whole degrees, as "
@@ -149,7 +148,7 @@ void add_dihedrals(const RunSystem& system, Terms& terms) {
 
 void add_impropers(const RunSystem& system, Terms& terms) {
     for (const Improper& t : system.topology.impropers) {
-        const double psi0 = std::abs(t.psi0 * degree_of_radian);
+        const double psi0 = std::abs(t.psi0 * degrees_per_radian);
         if (std::min(psi0, std::abs(psi0 - 180)) > 1e-6) {
             refuse(system, t.a,
                    fmt::format("improper is at {:.6g} degrees; expected 0 or 180, because LAMMPS "

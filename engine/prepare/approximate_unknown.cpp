@@ -16,7 +16,7 @@
 namespace palpa {
 namespace {
 
-constexpr std::string_view heading = "Approximate ligands";
+constexpr std::string_view ligands_heading = "Approximate ligands";
 
 using ByName = std::map<std::string, std::vector<ResidueRange>>;
 
@@ -163,7 +163,7 @@ private:
 
     void tell(const ApproximateLigand& ligand) {
         const std::vector<std::string> lines = describe(ligand);
-        for (const std::string& line : lines) report_.add(heading, line);
+        for (const std::string& line : lines) report_.add(ligands_heading, line);
         report_.warn(fmt::format("approximate: {}; see approximate.str; {}", lines.front(),
                                  real_parameters_advice));
         for (const std::string& note : ligand.notes) {

@@ -240,7 +240,7 @@ private:
             const AtomName& name = structure_.names[residue.first];
             Fragment& fragment =
                 fragments_[fmt::format("{} of its {} heavy atoms ({} missing)",
-                                       heavy - lacking.size(), heavy, join_some(lacking))];
+                                       heavy - lacking.size(), heavy, join_some(lacking, " "))];
             fragment.place = place(residue.first);
             fragment.residue = name.residue;
             fragment.where.push_back(
@@ -252,11 +252,12 @@ private:
         };
         if (lacks("N") || lacks("CA") || lacks("C")) {
             if (lacks("N") && lacks("C") && !lacks("CA")) ++alpha_carbons_;
-            missing_.add(place(residue.first),
-                         fmt::format("{}: the backbone atoms {} are missing; expected N, CA and C, "
-                                     "or --without {}:{}",
-                                     label, join_some(lacking), chain_of(structure_, residue.first),
-                                     structure_.names[residue.first].number));
+            missing_.add(
+                place(residue.first),
+                fmt::format("{}: the backbone atoms {} are missing; expected N, CA and C, "
+                            "or --without {}:{}",
+                            label, join_some(lacking, " "), chain_of(structure_, residue.first),
+                            structure_.names[residue.first].number));
             return;
         }
         report_.add("Heavy atoms built", fmt::format("{}: {}", label, fmt::join(lacking, " ")));
@@ -275,15 +276,6 @@ private:
                                                  : "",
                                      fragment.residue));
         }
-    }
-
-    static std::string join_some(const std::vector<std::string>& names) {
-        const std::size_t shown = std::min<std::size_t>(names.size(), 5);
-        std::string text = fmt::format(
-            "{}",
-            fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), " "));
-        if (names.size() > shown) text += fmt::format(" and {} more", names.size() - shown);
-        return text;
     }
 
     void name_hydrogens(const ResidueRange& residue, const WantedAtoms& wanted) {
@@ -395,7 +387,7 @@ private:
         if (!dropped_.empty()) {
             report_.warn(
                 fmt::format("left out hydrogens that the chosen protonation does not have: {}",
-                            join_some(dropped_)));
+                            join_some(dropped_, " ")));
         }
         if (corrected_elements_ > 0) {
             report_.warn(

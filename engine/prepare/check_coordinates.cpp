@@ -15,16 +15,6 @@
 namespace palpa {
 namespace {
 
-constexpr std::size_t most_shown = 5;
-
-std::string join_some(const std::vector<std::string>& items) {
-    const auto shown = std::min(items.size(), most_shown);
-    std::string text = fmt::format(
-        "{}", fmt::join(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
-    if (items.size() > shown) text += fmt::format(" and {} more", items.size() - shown);
-    return text;
-}
-
 void refuse_coincident(const Structure& structure, std::span<const std::uint8_t> is_added) {
     constexpr double closest = 0.5;  // Å
     std::vector<std::size_t> atoms;

@@ -1,6 +1,7 @@
 #include "prepare/report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <algorithm>
 #include <iterator>
 
@@ -29,6 +30,15 @@ std::string Report::to_text() const {
     };
     if (!warnings_.empty()) write("Warnings: check these first", warnings_);
     for (const auto& [heading, lines] : sections_) write(heading, lines);
+    return text;
+}
+
+std::string join_some(const std::vector<std::string>& names, std::string_view separator) {
+    const std::size_t shown = std::min<std::size_t>(names.size(), 5);
+    std::string text = fmt::format(
+        "{}",
+        fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), separator));
+    if (names.size() > shown) text += fmt::format(" and {} more", names.size() - shown);
     return text;
 }
 

@@ -25,4 +25,7 @@ private:
     std::vector<std::string> warnings_;
 };
 
+// The first five of some names, and how many more there are.
+std::string join_some(const std::vector<std::string>& names, std::string_view separator = ", ");
+
 }  // namespace palpa

@@ -29,15 +29,6 @@ struct SolventObstacle {
     std::string reason, advice;
 };
 
-std::string join_some(const std::vector<std::string>& words) {
-    constexpr std::size_t most = 6;
-    const std::size_t named = std::min(words.size(), most);
-    std::string text = fmt::format(
-        "{}", fmt::join(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(named), ", "));
-    if (words.size() > named) text += fmt::format(" and {} more", words.size() - named);
-    return text;
-}
-
 std::vector<std::uint8_t> find_structural(const Connectivity& connectivity,
                                           const PrepareSettings& settings) {
     if (settings.structural_waters.empty()) return {};

@@ -2,6 +2,7 @@
 
 #include "core/load_error.h"
 #include "core/units.h"
+#include "math/angles.h"
 #include "molecule/measure.h"
 #include "molecule/select.h"
 #include "simulation/held.h"
@@ -12,13 +13,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 namespace palpa {
 namespace {
 
-constexpr double degrees_per_radian = 180 / std::numbers::pi;
 constexpr double not_of_world = std::numeric_limits<double>::quiet_NaN();
 
 bool needs_single_atoms(LessonQuantity quantity) {

@@ -171,10 +171,10 @@ std::map<fs::path, std::string> input_names(const std::vector<fs::path>& files) 
 }
 
 constexpr std::string_view session_mark = "# A recorded Palpa session";
-constexpr std::string_view trajectory_mark =
+constexpr std::string_view by_trajectory_mark =
     "# A recorded Palpa session, in which a trajectory moved the atoms";
 
-constexpr std::string_view commands_mark = "# A recorded Palpa session, which commands drove";
+constexpr std::string_view by_commands_mark = "# A recorded Palpa session, which commands drove";
 
 // A line of session.toml: the version of the recording follows.
 constexpr std::string_view version_mark = "# Recording format ";
@@ -192,12 +192,12 @@ std::string describe_return(const SceneDescription& scene, RecordedBy by) {
             return fmt::format(
                 "{},\n# every field written out. Its frames are not here: it cannot be played "
                 "again.\n",
-                trajectory_mark);
+                by_trajectory_mark);
         case RecordedBy::Commands:
             return fmt::format(
                 "{},\n# every field written out. The commands are not here: to run it again, give "
                 "them to\n#   palpa run session.toml --headless --commands --record NEW_FOLDER\n",
-                commands_mark);
+                by_commands_mark);
         case RecordedBy::Journal:
             return fmt::format(
                 "{}, every field written out. To play what people did in it (journal.txt):\n#   "
@@ -288,11 +288,11 @@ void check_can_be_made(const fs::path& folder) {
 }  // namespace
 
 bool is_of_trajectory(const fs::path& folder) {
-    return begins_with(folder / "session.toml", trajectory_mark);
+    return begins_with(folder / "session.toml", by_trajectory_mark);
 }
 
 bool is_of_commands(const fs::path& folder) {
-    return begins_with(folder / "session.toml", commands_mark);
+    return begins_with(folder / "session.toml", by_commands_mark);
 }
 
 bool has_journal(const fs::path& folder) {

@@ -9,7 +9,7 @@
 namespace palpa {
 namespace {
 
-using Pairs = std::span<const std::array<std::uint32_t, 2>>;
+using PairSpan = std::span<const std::array<std::uint32_t, 2>>;
 
 struct ListedPair {
     std::uint32_t i, j;
@@ -17,7 +17,7 @@ struct ListedPair {
 };
 
 // Those of atoms that move against each other and are in reach.
-std::vector<ListedPair> evaluate_pairs(const TorsionModel& model, Pairs pairs, Pairs solvated,
+std::vector<ListedPair> evaluate_pairs(const TorsionModel& model, PairSpan pairs, PairSpan solvated,
                                        const NonbondedSettings& settings,
                                        const TorsionState& state) {
     const std::vector<std::uint32_t>& body_of = model.tree.bodies.body_of;
@@ -25,7 +25,7 @@ std::vector<ListedPair> evaluate_pairs(const TorsionModel& model, Pairs pairs, P
     const TopologyPairHessian water(model.topology, settings);
     std::vector<ListedPair> listed;
     listed.reserve(pairs.size() + solvated.size());
-    const auto add = [&](Pairs of, double reach2, auto&& hessian) {
+    const auto add = [&](PairSpan of, double reach2, auto&& hessian) {
         for (const auto& [i, j] : of) {
             const double r2 = (state.positions[i] - state.positions[j]).squaredNorm();
             if (body_of[i] != body_of[j] && r2 < reach2)
@@ -196,7 +196,7 @@ private:
 }  // namespace
 
 void update_pair_derivatives(const TorsionModel& model, const LocalCoordinates& coordinates,
-                             Pairs pairs, Pairs solvated, const NonbondedSettings& settings,
+                             PairSpan pairs, PairSpan solvated, const NonbondedSettings& settings,
                              const TorsionState& state, SecondDerivatives& derivatives) {
     derivatives.mobile = coordinates.mobile;
     derivatives.all.setZero(coordinates.size(), coordinates.size());

@@ -1,6 +1,7 @@
 #include "view/atom_colours.h"
 
 #include "core/units.h"
+#include "math/angles.h"
 #include "molecule/hydropathy.h"
 #include "simulation/components.h"
 #include "simulation/held.h"
@@ -138,7 +139,6 @@ Colours colour_pushes(const World& world) {
     return colours;
 }
 
-constexpr double degrees = 180 / std::numbers::pi;
 constexpr double most_turn_deg = 30;
 constexpr double least_answer_deg = 0.001, most_answer_deg = 1;  // logarithmic
 
@@ -169,7 +169,8 @@ Colours colour_turns(const World& world) {
     std::vector<double> turned_deg;
     if (state) {
         for (const double angle : state->angles)
-            turned_deg.push_back(degrees * std::abs(std::remainder(angle, 2 * std::numbers::pi)));
+            turned_deg.push_back(degrees_per_radian *
+                                 std::abs(std::remainder(angle, 2 * std::numbers::pi)));
     }
     return colour_scale(of_atoms<double>(world, turned_deg), 0, most_turn_deg);
 }
@@ -178,7 +179,7 @@ Colours colour_turns(const World& world) {
 Colours colour_answers(const World& world, std::span<const double> angles) {
     std::vector<double> shares;
     for (const double angle : of_atoms(world, angles)) {
-        const double deg = degrees * std::abs(angle);
+        const double deg = degrees_per_radian * std::abs(angle);
         shares.push_back(deg > 0 ? std::log10(deg / least_answer_deg) : -1);
     }
     return colour_scale(shares, 0, std::log10(most_answer_deg / least_answer_deg));

@@ -21,7 +21,7 @@ constexpr float coil_radius = 0.28F;
 constexpr float helix_half_width = 1.25F, helix_half_thickness = 0.25F;
 constexpr float strand_half_width = 1.0F, strand_half_thickness = 0.25F;
 constexpr float head_half_width = 1.7F;
-constexpr float head_length = 1.5F;  // in residues
+constexpr float arrowhead_length = 1.5F;  // in residues
 constexpr double longest_alpha_step = 4.5;
 
 enum class Kind { Coil, Helix, Strand };
@@ -249,7 +249,7 @@ private:
     // A shaft and a head, each a body.
     void add_strand(const Run& strand, MeshShape& mesh) const {
         const Reach body = reach_of(strand);
-        const float neck = body.end - std::min(head_length, 0.6F * (body.end - body.start));
+        const float neck = body.end - std::min(arrowhead_length, 0.6F * (body.end - body.start));
         std::vector<Ring> shaft, head;
         each_step({body.start, neck}, [&](float u, float) {
             shaft.push_back(ring_at(u, body, strand_half_width, strand_half_thickness));

@@ -19,7 +19,7 @@
 namespace palpa {
 namespace {
 
-constexpr float beside = 2;        // Å
+constexpr float clearance = 2;     // Å
 constexpr std::size_t cells = 96;  // either way, over what the molecule covers
 
 // How far away the molecule in hand is at most, for the places of the picture that it covers.
@@ -36,7 +36,7 @@ public:
             const std::optional<Place> place = find_place(sphere.centre);
             if (!place) continue;
             places.push_back(*place);
-            places.back().reach = (sphere.radius + beside) / place->depth;
+            places.back().reach = (sphere.radius + clearance) / place->depth;
         }
         if (places.empty()) return;
         low_ = {places[0].x, places[0].y};

@@ -1,5 +1,6 @@
 #include "view/first_view.h"
 
+#include "math/angles.h"
 #include "simulation/components.h"
 #include "simulation/held.h"
 
@@ -55,14 +56,15 @@ OrbitCamera first_camera(const ViewDescription& view, const FrameScene& frame,
 std::array<double, 3> describe_camera(const OrbitCamera& camera, const ViewDescription& view,
                                       const FrameScene& frame, const AtomRange& framed,
                                       const Room& room) {
-    constexpr double degrees = 180 / std::numbers::pi, most_deg = 180;
+    constexpr double most_deg = 180;
     constexpr double least_zoom = 0.01, most_zoom = 100;
     ViewDescription straight = view;
-    const double azimuth = std::remainder(camera.azimuth * degrees, 2 * most_deg);
-    straight.camera = {azimuth, camera.elevation * degrees, 1};
+    const double azimuth = std::remainder(camera.azimuth * degrees_per_radian, 2 * most_deg);
+    straight.camera = {azimuth, camera.elevation * degrees_per_radian, 1};
     const double zoom =
         first_camera(straight, frame, framed, room).distance / static_cast<double>(camera.distance);
-    return {std::round(10 * azimuth) / 10, std::round(10 * camera.elevation * degrees) / 10,
+    return {std::round(10 * azimuth) / 10,
+            std::round(10 * camera.elevation * degrees_per_radian) / 10,
             std::clamp(std::round(100 * zoom) / 100, least_zoom, most_zoom)};
 }
 

@@ -1,6 +1,7 @@
 #include "view/measures.h"
 
 #include "core/assertion.h"
+#include "math/angles.h"
 #include "molecule/measure.h"
 #include "view/lines.h"
 #include "view/palette.h"
@@ -11,13 +12,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <string>
 
 namespace palpa {
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi;
 constexpr LineLook line{0.045F, measure_colour, measure_pick};
 constexpr LineLook thin{0.03F, measure_colour, measure_pick};
 constexpr double in_line = 1e-6;  // rad, Å: what has no direction has no arc
@@ -37,7 +36,7 @@ void add_angle(std::span<const Vec3> p, FrameScene& frame, std::vector<ViewLabel
     constexpr double share = 0.4, most = 0.9;  // of the shorter leg; Å
     const Vec3 first = p[0] - p[1], second = p[2] - p[1], normal = first.cross(second);
     const double angle = find_angle(p[0], p[1], p[2]);
-    const std::string text = fmt::format("{:.1f}°", degrees * angle);
+    const std::string text = fmt::format("{:.1f}°", degrees_per_radian * angle);
     if (!(normal.norm() > in_line * first.norm() * second.norm())) {
         labels.push_back({as_float(p[1]), text});
         return;
@@ -50,7 +49,7 @@ void add_dihedral(std::span<const Vec3> p, FrameScene& frame, std::vector<ViewLa
     constexpr double radius = 0.6;  // Å
     const Vec3 axis = p[2] - p[1], centre = 0.5 * (p[1] + p[2]);
     const double dihedral = find_dihedral(p[0], p[1], p[2], p[3]);
-    const std::string text = fmt::format("{:+.1f}°", degrees * dihedral);
+    const std::string text = fmt::format("{:+.1f}°", degrees_per_radian * dihedral);
     const auto across_axis = [&](const Vec3& v) -> Vec3 {
         return v - v.dot(axis) / axis.squaredNorm() * axis;
     };

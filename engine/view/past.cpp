@@ -20,7 +20,7 @@
 namespace palpa {
 namespace {
 
-constexpr double shortest = 0.03, longest = 3;  // Å: less is no way, more no way that was gone
+constexpr double shortest = 0.03, longest_step = 3;  // Å: less is no way, more no way that was gone
 constexpr double no_way = 1e-3;
 constexpr std::size_t most_points = 2000;
 
@@ -137,7 +137,7 @@ void Past::follow_hand(const World& world, Entity hand, double trail_s) {
     if (!grip) return;
     const Vec3 place = centre_of(world.resource<AtomTable>(), held_atoms(world, hand));
     const bool is_same = !points.empty() && trail.molecule == grip->molecule;
-    const bool is_joined = is_same && (points.back().place - place).norm() < longest;
+    const bool is_joined = is_same && (points.back().place - place).norm() < longest_step;
     trail.molecule = grip->molecule;
     // The newest point goes along with what is held until it is far enough from the one before.
     const bool is_now = is_joined && points.back().time_s == now_s_;

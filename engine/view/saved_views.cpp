@@ -1,15 +1,13 @@
 #include "view/saved_views.h"
+#include "math/angles.h"
 
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 
 namespace palpa {
 namespace {
-
-constexpr double degrees = 180 / std::numbers::pi;
 
 // All atoms alike, so that a view does not depend on how they are drawn.
 std::vector<SphereShape> balls_of(std::span<const glm::vec3> places,
@@ -48,8 +46,8 @@ OrbitCamera saved_camera(const SavedView& saved, std::span<const glm::vec3> plac
                          const std::vector<bool>& framed, const Room& room) {
     const auto [azimuth_deg, elevation_deg, nearer] = saved.camera;
     OrbitCamera camera;
-    orbit(camera, static_cast<float>(azimuth_deg / degrees),
-          static_cast<float>(elevation_deg / degrees));
+    orbit(camera, static_cast<float>(azimuth_deg / degrees_per_radian),
+          static_cast<float>(elevation_deg / degrees_per_radian));
     frame_shapes(camera, balls_of(places, framed), room);
     zoom(camera, static_cast<float>(1 / nearer));
     const auto& [x, y, z] = saved.shift;
@@ -60,8 +58,8 @@ OrbitCamera saved_camera(const SavedView& saved, std::span<const glm::vec3> plac
 void set_camera(SavedView& saved, const OrbitCamera& camera, std::span<const glm::vec3> places,
                 const std::vector<bool>& framed, const Room& room) {
     constexpr double turn = 360, least_zoom = 0.01, most_zoom = 100;
-    saved.camera = {rounded(std::remainder(camera.azimuth * degrees, turn), 10),
-                    rounded(camera.elevation * degrees, 10), 1};
+    saved.camera = {rounded(std::remainder(camera.azimuth * degrees_per_radian, turn), 10),
+                    rounded(camera.elevation * degrees_per_radian, 10), 1};
     saved.shift = {};
     const OrbitCamera straight = saved_camera(saved, places, framed, room);
     const double zoom = static_cast<double>(straight.distance) / camera.distance;

@@ -21,7 +21,7 @@ class StudyWindow(unittest.TestCase):
         self.fail("waited in vain for " + what)
 
     def take_part(self, folder, trials, before):
-        """Presses Enter until so many trials are in the table, and Esc."""
+        """Presses Enter until at least so many trials are in the table, and Esc."""
         with Display() as display:
             return self.take_part_on(display, folder, trials, before)
 
@@ -36,7 +36,7 @@ class StudyWindow(unittest.TestCase):
         def press_and_look():
             display.do("key", "Return")
             time.sleep(0.5)
-            return len(self.rows(folder)) == before + trials
+            return len(self.rows(folder)) >= before + trials
 
         self.wait_until(press_and_look, "the trials")
         display.do("key", "Escape")
@@ -55,15 +55,16 @@ class StudyWindow(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             out = self.take_part(folder, 2, 0)
             first = self.rows(folder)
-            self.take_part(folder, 1, 2)
+            self.take_part(folder, 1, len(first))
             both = self.rows(folder)
 
-            self.assertIn("2 of 4 trials", out)
-            self.assertEqual(both[:2], first)
-            self.assertEqual({row["mode"] for row in first}, {"4", "guarded"})
-            self.assertEqual([row["place"] for row in first], ["1", "2"])
+            # On a busy machine a press that came late may have ended one trial more.
+            self.assertIn(f"{len(first)} of 4 trials", out)
+            self.assertEqual(both[:len(first)], first)
+            self.assertEqual({row["mode"] for row in first[:2]}, {"4", "guarded"})
+            self.assertEqual([row["place"] for row in first], [str(i + 1) for i in range(len(first))])
             self.assertEqual(len({row["participant"] for row in first}), 1)
-            self.assertNotEqual(both[2]["participant"], first[0]["participant"])
+            self.assertNotEqual(both[len(first)]["participant"], first[0]["participant"])
             for row in both:
                 # Nobody moved the mouse: as far outside of the place to be found as it began.
                 start = float(row["start_angstrom"])
@@ -72,7 +73,7 @@ class StudyWindow(unittest.TestCase):
                 self.assertAlmostEqual(float(row["found_angstrom"]), start, delta=0.3)
                 self.assertGreater(float(row["time_s"]), 1)
                 self.assertEqual(len(row["participant"]), 6)
-            self.assertEqual(len({row["start_angstrom"] for row in both}), 3)
+            self.assertEqual(len({row["start_angstrom"] for row in both}), len(both))
             self.refuses_other_settings(Path(folder))
 
     def refuses_other_settings(self, folder):

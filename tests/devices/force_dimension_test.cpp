@@ -17,13 +17,13 @@ using test::ForceDimensionStub;
 
 namespace {
 
-OpenedDevice open_stub(const std::string& library = PALPA_FORCE_DIMENSION_STUB) {
+OpenedDevice open_dhd_stub(const std::string& library = PALPA_FORCE_DIMENSION_STUB) {
     DeviceRequest request;
     request.system_root = "/nowhere";
     return open_force_dimension({.library = library, .retry_s = 1e-3, .is_paced = false}, request);
 }
 
-const DeviceCheck& check_of(const OpenedDevice& opened, const std::string& layer) {
+const DeviceCheck& dhd_check_of(const OpenedDevice& opened, const std::string& layer) {
     const auto found = std::find_if(opened.checks.begin(), opened.checks.end(),
                                     [&](const DeviceCheck& check) { return check.layer == layer; });
     REQUIRE(found != opened.checks.end());
@@ -38,7 +38,7 @@ struct StubbedOmega {
     explicit StubbedOmega(int type = dhd::omega_3, bool needs_calibration = false) {
         stub.set_type(type);
         stub.need_calibration(needs_calibration);
-        opened = open_stub();
+        opened = open_dhd_stub();
         REQUIRE(opened.device);
         stub.step(1);
     }
@@ -90,7 +90,7 @@ TEST_CASE("an omega is opened with its limits, motors on, weight carried",
         INFO(check.layer << ": " << check.found);
         CHECK(check.outcome == (check.layer == "bus" ? CheckOutcome::Unknown : CheckOutcome::Ok));
     }
-    CHECK(check_of(omega.opened, "library").found == PALPA_FORCE_DIMENSION_STUB);
+    CHECK(dhd_check_of(omega.opened, "library").found == PALPA_FORCE_DIMENSION_STUB);
 }
 
 TEST_CASE("every type has its limits, and one that is not known an omega's",
@@ -106,7 +106,7 @@ TEST_CASE("every type has its limits, and one that is not known an omega's",
     StubbedOmega omega(type);
 
     CHECK(omega.device().spec().peak_force_newton == peak);
-    CHECK(check_of(omega.opened, "limits").outcome == outcome);
+    CHECK(dhd_check_of(omega.opened, "limits").outcome == outcome);
     CHECK(omega.stub.is_button_emulated() == (type == dhd::sigma_7));
 }
 
@@ -293,7 +293,7 @@ TEST_CASE("an omega that its button switched off waits for the button",
 TEST_CASE("a device that waits for its calibration has no reading and no force",
           "[devices][force-dimension]") {
     StubbedOmega omega(dhd::falcon, true);
-    const DeviceCheck& check = check_of(omega.opened, "calibration");
+    const DeviceCheck& check = dhd_check_of(omega.opened, "calibration");
     CHECK(check.outcome == CheckOutcome::Failed);
     CHECK_THAT(check.remedy, Catch::Contains("Falcon"));
 
@@ -328,7 +328,7 @@ TEST_CASE("without an omega the report names the layer that failed, and a remedy
         told = "no device found";
         remedy = "power and cable";
     }
-    const OpenedDevice opened = open_stub(library);
+    const OpenedDevice opened = open_dhd_stub(library);
 
     CHECK_FALSE(opened.device);
     CHECK(opened.checks.back().layer == layer);
@@ -355,12 +355,12 @@ TEST_CASE("an omega that is plugged in is reported with the library that is miss
         return open_force_dimension({.library = "/nowhere/libdhd.so.3"}, request);
     };
 
-    CHECK(check_of(open(), "permission").outcome == CheckOutcome::Failed);  // no such node
+    CHECK(dhd_check_of(open(), "permission").outcome == CheckOutcome::Failed);  // no such node
     (void)folder.add_file("dev/bus/usb/001/007", "");
     const OpenedDevice opened = open();
     CHECK_FALSE(opened.device);
-    CHECK_THAT(check_of(opened, "bus").found, Catch::Contains("1451:0402"));
-    CHECK(check_of(opened, "permission").outcome == CheckOutcome::Ok);
+    CHECK_THAT(dhd_check_of(opened, "bus").found, Catch::Contains("1451:0402"));
+    CHECK(dhd_check_of(opened, "permission").outcome == CheckOutcome::Ok);
     CHECK(opened.checks.back().layer == "library");
     CHECK(is_force_dimension_there(request));
     request.system_root = "/nowhere";
@@ -369,7 +369,7 @@ TEST_CASE("an omega that is plugged in is reported with the library that is miss
 
 TEST_CASE("a second hand does not take the first one's omega", "[devices][force-dimension]") {
     StubbedOmega omega;
-    const OpenedDevice second = open_stub();
+    const OpenedDevice second = open_dhd_stub();
 
     CHECK_FALSE(second.device);
     CHECK(second.checks.back().layer == "init");

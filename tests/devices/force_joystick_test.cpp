@@ -15,10 +15,13 @@ using test::Bytes;
 
 namespace {
 
-constexpr HidSettings endless{.retry_s = 1e-3, .stale_s = 1e3, .silent_s = 1e3, .is_paced = false};
+constexpr HidSettings without_time_limits{
+    .retry_s = 1e-3, .stale_s = 1e3, .silent_s = 1e3, .is_paced = false};
 constexpr double travel_m = ForceJoystickProtocol::half_travel_m;
 
-OpenedDevice open_stick() { return open_hid(std::make_unique<ForceJoystickProtocol>(), endless); }
+OpenedDevice open_stick() {
+    return open_hid(std::make_unique<ForceJoystickProtocol>(), without_time_limits);
+}
 
 HidDevice& stick_of(const OpenedDevice& opened) {
     REQUIRE(opened.device);

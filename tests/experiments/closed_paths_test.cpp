@@ -22,7 +22,7 @@ ClosedPathOptions closed_paths(std::size_t count, const std::vector<std::string>
 }  // namespace
 
 TEST_CASE("closed paths in space do the work of the continuous law and end where it ends",
-          "[experiments][coupling]") {
+          "[experiments][long]") {
     const std::string shape = GENERATE("scalar", "tensor");
     const std::vector<ClosedPathResult> results =
         play_closed_paths(closed_paths(60, {"gain_shape=" + shape}), {});

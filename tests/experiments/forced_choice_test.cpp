@@ -76,8 +76,7 @@ TEST_CASE("with constant gains stiffness is felt in proportion, guarded it is ca
     CHECK(guarded_twice / guarded_once < 1.2);
 }
 
-TEST_CASE("the fitted threshold is the one that the force law predicts",
-          "[experiments][coupling]") {
+TEST_CASE("the fitted threshold is the one that the force law predicts", "[experiments][long]") {
     const auto mode = GENERATE(CouplingMode::VariableForceConstantDisplacement,
                                CouplingMode::ConstantForceConstantDisplacement);
     ForcedChoiceOptions options = waters(Question::AttractsMore, {mode});

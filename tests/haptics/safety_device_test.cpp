@@ -77,7 +77,7 @@ int last_force(const std::vector<WallRun::Row>& rows) {
 }  // namespace
 
 TEST_CASE("no hand on the emulated device that holds still is taken for a frozen reading",
-          "[haptics][safety]") {
+          "[haptics][safety][coupling]") {
     const HandGrip grip = GENERATE(HandGrip::None, HandGrip::Light, HandGrip::Slack,
                                    HandGrip::Medium, HandGrip::Firm, HandGrip::FirmGrip);
     const double place_m = GENERATE(0.0, 0.079);  // in the middle, at the stop

@@ -27,7 +27,7 @@ AccuracyLog log_of(const std::optional<std::array<double, 2>>& range_pN,
     return {scene, servo};
 }
 
-ServoTick tick_of(double felt_N_per_m, double cap_ratio) {
+ServoTick tick_that_felt(double felt_N_per_m, double cap_ratio) {
     ServoTick tick;
     tick.felt_N_per_m = felt_N_per_m;
     tick.cap_ratio = cap_ratio;
@@ -46,7 +46,7 @@ RelaxStepReport step_of(std::size_t active, std::optional<double> estimated_erro
 
 TEST_CASE("a scene without a range or tolerance has no accuracy report", "[session][accuracy]") {
     AccuracyLog log = log_of({}, {});
-    log.add(tick_of(100, 3));
+    log.add(tick_that_felt(100, 3));
 
     CHECK_FALSE(log.report(1e3));
 }
@@ -54,8 +54,8 @@ TEST_CASE("a scene without a range or tolerance has no accuracy report", "[sessi
 TEST_CASE("what was felt of a range, and what was not so exact", "[session][accuracy]") {
     AccuracyLog log = log_of(std::array{20.0, 3000.0}, 50.0);
     for (const auto& [felt, cap_ratio] : {std::pair{5.0, 1.0}, {30.0, 4.5}, {10.0, 2.0}})
-        log.add(tick_of(felt, cap_ratio));
-    ServoTick warm = tick_of(20, 1);
+        log.add(tick_that_felt(felt, cap_ratio));
+    ServoTick warm = tick_that_felt(20, 1);
     warm.stage = SafetyStage::ThermalLimit;
     log.add(warm);
     for (int i = 1; i <= 10; ++i) log.add_step(step_of(30 + 2 * i, 10.0 * i));
@@ -116,7 +116,7 @@ TEST_CASE("what an error estimate finds stands for the steps before it", "[sessi
 
 TEST_CASE("no requirement is unmet where everything holds", "[session][accuracy]") {
     AccuracyLog log = log_of(std::array{20.0, 3000.0}, 50.0);
-    log.add(tick_of(33, 1));
+    log.add(tick_that_felt(33, 1));
     for (int i = 1; i <= 9; ++i) log.add_step(step_of(8, 50.0));
     log.add_step(step_of(8, 51.0));
 

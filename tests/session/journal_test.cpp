@@ -186,8 +186,8 @@ TEST_CASE("a journal states its version, and of the one before edits have old na
     const Journal newer = read("2.7", "p 1\n");
     REQUIRE(newer.notes.size() == 1);
     CHECK_THAT(newer.notes[0], Contains("journal format 2.7 is newer than 2.0"));
-    CHECK_THAT(error_of_version("2.7", "q 1\n"),
-               Contains("'q' is not a kind of line") && Contains("a newer Palpa, since the journal"));
+    CHECK_THAT(error_of_version("2.7", "q 1\n"), Contains("'q' is not a kind of line") &&
+                                                     Contains("a newer Palpa, since the journal"));
     CHECK_THAT(error_of_version("3.0", "p 1\n"),
                Contains("journal.txt:1:1: journal format 3.0 is newer than this program"));
     CHECK_THAT(error_of_version("two", "p 1\n"),

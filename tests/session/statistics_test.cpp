@@ -8,7 +8,7 @@ using namespace palpa;
 
 namespace {
 
-ServoTick tick_of(double force, double distance) {
+ServoTick tick_with_force(double force, double distance) {
     ServoTick tick;
     tick.sent_newton.x() = force;
     tick.contact.molecule.place_angstrom.x() = distance;
@@ -21,7 +21,7 @@ TEST_CASE("the extremes of a run are kept with their signs", "[session][statisti
     Statistics statistics(1e-3);
     for (const auto& [force, distance] :
          {std::pair{0.2, 5.0}, {-0.9, 3.1}, {2.1, 2.5}, {-0.1, -0.4}, {0.0, -6.0}}) {
-        statistics.add(tick_of(force, distance));
+        statistics.add(tick_with_force(force, distance));
     }
 
     const Summary summary = statistics.summary();
@@ -39,7 +39,7 @@ TEST_CASE("the extremes of a run are kept with their signs", "[session][statisti
 TEST_CASE("in space a felt force is a norm, which neither attracts nor repels",
           "[session][statistics]") {
     Statistics statistics(1e-3);
-    ServoTick tick = tick_of(1.2, 3);
+    ServoTick tick = tick_with_force(1.2, 3);
     tick.sent_newton = {1.2, -0.5, 0};
     tick.contact.active_freedom = 6;
     statistics.add(tick);
@@ -55,7 +55,7 @@ TEST_CASE("what was clamped, and what was wrong, is a share of all ticks",
           "[session][statistics]") {
     Statistics statistics(1e-3);
     for (int i = 0; i < 8; ++i) {
-        ServoTick tick = tick_of(0.1, 3);
+        ServoTick tick = tick_with_force(0.1, 3);
         tick.clamped = i < 6;
         if (i == 7) tick.stage = SafetyStage::NotFinite;
         statistics.add(tick);
@@ -126,9 +126,9 @@ TEST_CASE("without steps there is no step time", "[session][statistics]") {
 
 TEST_CASE("ripple is that of the last four seconds", "[session][statistics]") {
     Statistics statistics(1e-3);
-    for (int i = 0; i < 5000; ++i) statistics.add(tick_of(std::sin(0.05 * i), 3));  // 8 Hz
+    for (int i = 0; i < 5000; ++i) statistics.add(tick_with_force(std::sin(0.05 * i), 3));  // 8 Hz
     const double loud = statistics.summary().ripple.value().rms;
-    for (int i = 0; i < 4000; ++i) statistics.add(tick_of(0.5, 3));
+    for (int i = 0; i < 4000; ++i) statistics.add(tick_with_force(0.5, 3));
 
     CHECK(loud == Approx(std::sqrt(0.5)).epsilon(0.05));
     CHECK(statistics.summary().ripple.value().rms < 1e-12);

@@ -252,7 +252,7 @@ TEST_CASE("what is taken under a force of newtons is felt gliding, and let go wi
 }
 
 TEST_CASE("all of small scenes can be taken while they run, and no force jumps",
-          "[session][takes]") {
+          "[session][takes][slow]") {
     struct Row {
         std::string file;
         Settings settings;

@@ -147,7 +147,7 @@ test::TwoHeld waters() { return {{test::water_body(), test::water_body()}, {}}; 
 }  // namespace
 
 TEST_CASE("closed paths of two hands in space give no energy, whatever they hold and both move",
-          "[session][held]") {
+          "[session][held][coupling]") {
     PathCase c;
     const bool is_water = GENERATE(false, true);
     c.pair = is_water ? waters() : spheres();
@@ -166,7 +166,8 @@ TEST_CASE("closed paths of two hands in space give no energy, whatever they hold
 
 // In space a raised A_d leaves the molecules elsewhere; along a line they come back to the distance
 // that they had.
-TEST_CASE("on a line two hands get no energy where the cap raises A_d either", "[session][held]") {
+TEST_CASE("on a line two hands get no energy where the cap raises A_d either",
+          "[session][held][coupling]") {
     PathCase c;
     const bool is_water = GENERATE(false, true);
     c.pair = is_water ? waters() : spheres();
@@ -209,7 +210,8 @@ TEST_CASE("the order in which two hands stand makes no more than a tick of diffe
     }
 }
 
-TEST_CASE("two hands that press their molecules against each other are calm", "[session][held]") {
+TEST_CASE("two hands that press their molecules against each other are calm",
+          "[session][held][coupling]") {
     const HandGrip grip = GENERATE(HandGrip::Light, HandGrip::Medium, HandGrip::Firm);
     const double depth_m = GENERATE(0.01, 0.02);
     test::TwoHeld pair = waters();
@@ -386,7 +388,7 @@ ShippedResult run_shipped(std::uint32_t seed, std::uint64_t period_ms) {
 }  // namespace
 
 TEST_CASE("closed paths of two hands in the shipped coupling give no more than the laws do",
-          "[session][held][second]") {
+          "[session][held][second][coupling]") {
     const std::uint64_t period_ms = GENERATE(1, 14);
     double exchanged = 0;
     int free = 0;  // of limits, beyond which there is no law but that nothing is given

@@ -2,11 +2,13 @@
 #pragma once
 #include "ecs/world.h"
 #include "scene/description.h"
+#include "scene/read_scene.h"
 #include "simulation/components.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/molecules.h"
 #include "simulation/resources.h"
+#include "tests/support/paths.h"
 #include "tests/support/water_scene.h"
 
 #include <algorithm>
@@ -27,6 +29,11 @@ inline SceneDescription with_held_at(std::size_t number, SceneDescription scene)
     all.erase(found);
     all.insert(all.begin() + static_cast<std::ptrdiff_t>(number), std::move(held));
     return scene;
+}
+
+// HIV protease with its inhibitor, as in scenes/hiv.
+inline World protease_world() {
+    return load_world(read_scene(in_project("scenes/hiv"), std::vector<std::string>()));
 }
 
 inline AtomRange range_called(const World& world, std::string_view name) {

@@ -6,6 +6,7 @@
 #include "simulation/load.h"
 #include "simulation/resources.h"
 #include "tests/support/gpu.h"
+#include "tests/support/held_scene.h"
 #include "tests/support/ideal_chain.h"
 #include "tests/support/paths.h"
 #include "view/build_frame.h"
@@ -113,8 +114,7 @@ Drawing helix(std::size_t count) {
 }
 
 Drawing protease() {
-    const World world =
-        load_world(read_scene(test::in_project("scenes/hiv"), std::vector<std::string>()));
+    const World world = test::protease_world();
     Drawing drawing;
     drawing.atoms = world.resource<AtomTable>();
     drawing.residues = find_residues(world);

@@ -5,6 +5,7 @@
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "tests/support/gpu.h"
+#include "tests/support/held_scene.h"
 #include "tests/support/paths.h"
 #include "view/build_frame.h"
 
@@ -88,8 +89,7 @@ TEST_CASE("the partner of a hydrogen bond stays with its bonds, an atom without 
 TEST_CASE("clipped, the inhibitor is seen whole in its pocket from any side", "[view][clip][gpu]") {
     GpuDevice device(test::validated());
     Renderer renderer(device);
-    const World world =
-        load_world(read_scene(test::in_project("scenes/hiv"), std::vector<std::string>()));
+    const World world = test::protease_world();
     const AtomRange held = held_range(world, first_hand(world));
     const auto representation =
         GENERATE(Representation::InHand, Representation::SpaceFilling, Representation::Pocket);

@@ -160,8 +160,7 @@ TEST_CASE("a salt bridge of what is in hand is found, and is no contact", "[view
 
 TEST_CASE("contacts of the inhibitor in HIV-1 protease are those of a plain search",
           "[view][contacts]") {
-    const World world =
-        load_world(read_scene(test::in_project("scenes/hiv"), std::vector<std::string>()));
+    const World world = test::protease_world();
     const AtomTable& atoms = world.resource<AtomTable>();
     const AtomRange held = held_range(world, first_hand(world));
     const auto radius = [&](std::uint32_t i) {

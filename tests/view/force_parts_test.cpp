@@ -26,10 +26,6 @@ using namespace palpa;
 
 namespace {
 
-World protease_world() {
-    return load_world(read_scene(test::in_project("scenes/hiv"), std::vector<std::string>()));
-}
-
 std::vector<ForcePart> find_parts(const World& world, ShownForces of,
                                   double least_nN = least_shown_nN) {
     const Entity hand = first_hand(world);
@@ -62,7 +58,7 @@ std::vector<glm::vec3> list_arrows(const FrameScene& frame) {
 
 TEST_CASE("the forces of all residues, or of all atoms, sum to the force on the hand",
           "[view][forces]") {
-    World world = GENERATE(0, 1) == 0 ? protease_world() : test::three_waters(1, {2, 3, 1});
+    World world = GENERATE(0, 1) == 0 ? test::protease_world() : test::three_waters(1, {2, 3, 1});
     const Entity hand = first_hand(world);
     // Another place than that of rest, where forces cancel.
     place_grabbed(world, grip_of(world, hand).pose.place_angstrom + Vec3(0.4, 0, 0));
@@ -138,7 +134,7 @@ TEST_CASE("of two waters the other one does all: its arrow is as long as the han
 
 TEST_CASE("of many the strongest 10 residues or 20 atoms are drawn, with their names",
           "[view][forces]") {
-    const World world = protease_world();
+    const World world = test::protease_world();
     const AtomTable& atoms = world.resource<AtomTable>();
     const auto [of, most] =
         GENERATE(std::pair(ShownForces::Residues, 10), std::pair(ShownForces::Atoms, 20));

@@ -2,6 +2,7 @@
 #include "scene/read_scene.h"
 #include "simulation/load.h"
 #include "simulation/resources.h"
+#include "tests/support/held_scene.h"
 #include "tests/support/paths.h"
 #include "tests/support/water_scene.h"
 #include "view/build_frame.h"
@@ -38,8 +39,7 @@ std::size_t count(const World& world, const FrameScene& frame, const std::string
 }  // namespace
 
 TEST_CASE("polar hydrogens are those at nitrogen, oxygen and sulphur", "[view][hydrogens]") {
-    const World world =
-        load_world(read_scene(test::in_project("scenes/hiv"), std::vector<std::string>()));
+    const World world = test::protease_world();
     const Representation look = GENERATE(Representation::BallAndStick, Representation::SpaceFilling,
                                          Representation::Licorice, Representation::Lines);
     const FrameScene all = frame_of(world, look, ShownHydrogens::All),
@@ -62,8 +62,7 @@ TEST_CASE("polar hydrogens are those at nitrogen, oxygen and sulphur", "[view][h
 }
 
 TEST_CASE("hydrogens of hydrogen bonds that are drawn are always there", "[view][hydrogens]") {
-    const World world =
-        load_world(read_scene(test::in_project("scenes/hiv"), std::vector<std::string>()));
+    const World world = test::protease_world();
     const std::vector<HydrogenBond> bonds = find_hydrogen_bonds(world, ShownBonds::InHand);
     REQUIRE(bonds.size() > 3);
     const auto is_there = [&](const FrameScene& frame, std::uint32_t atom) {
@@ -92,8 +91,7 @@ TEST_CASE("waters without hydrogens are their oxygens", "[view][hydrogens]") {
 }
 
 TEST_CASE("representations with rules of their own keep their hydrogens", "[view][hydrogens]") {
-    const World world =
-        load_world(read_scene(test::in_project("scenes/hiv"), std::vector<std::string>()));
+    const World world = test::protease_world();
     const Representation look = GENERATE(Representation::InHand, Representation::Pocket);
     CHECK(frame_of(world, look, ShownHydrogens::All).spheres.size() ==
           frame_of(world, look, ShownHydrogens::None).spheres.size());

@@ -34,10 +34,6 @@ using test::load_error_of;
 
 namespace {
 
-World protease_world() {
-    return load_world(read_scene(test::in_project("scenes/hiv"), std::vector<std::string>()));
-}
-
 ViewSettings plain(Representation representation) {
     return {
         .representation = representation, .force_arrow = false, .hydrogen_bonds = ShownBonds::None};
@@ -73,14 +69,14 @@ bool is_closed(const std::vector<MeshShape>& meshes) {
 }  // namespace
 
 TEST_CASE("a cartoon shows proteins as ribbons and the rest as balls", "[view][layers]") {
-    const World world = protease_world();
+    const World world = test::protease_world();
     const FrameScene frame = build_frame(world, plain(Representation::Cartoon));
     REQUIRE(frame.meshes.size() == 1);
     CHECK(frame.spheres.size() == count(world, "ligand"));
 }
 
 TEST_CASE("a cartoon shows the atoms of a modified residue", "[view][layers]") {
-    World world = protease_world();
+    World world = test::protease_world();
     const auto drawn = [&] {
         std::size_t found = 0;
         for (const SphereShape& sphere : build_frame(world, plain(Representation::Cartoon)).spheres)
@@ -102,7 +98,7 @@ TEST_CASE("a cartoon shows the atoms of a modified residue", "[view][layers]") {
 
 TEST_CASE("a cartoon shows the side chains at which hydrogen bonds of the hand end",
           "[view][layers]") {
-    const World world = protease_world();
+    const World world = test::protease_world();
     const AtomTable& atoms = world.resource<AtomTable>();
     ViewSettings settings = plain(Representation::Cartoon);
     settings.hydrogen_bonds = ShownBonds::InHand;
@@ -125,7 +121,7 @@ TEST_CASE("a cartoon shows the side chains at which hydrogen bonds of the hand e
 }
 
 TEST_CASE("residues that are missing leave a dashed gap", "[view][layers]") {
-    World world = protease_world();
+    World world = test::protease_world();
     const std::size_t before = build_frame(world, plain(Representation::Cartoon)).cones.size();
     // One chain's second half 5 Å aside: its ribbon is cut between residues 50 and 51.
     AtomTable& atoms = world.resource<AtomTable>();
@@ -141,7 +137,7 @@ TEST_CASE("residues that are missing leave a dashed gap", "[view][layers]") {
 }
 
 TEST_CASE("a layer is drawn besides, and of its selection alone", "[view][layers]") {
-    const World world = protease_world();
+    const World world = test::protease_world();
     ViewSettings settings = plain(Representation::Cartoon);
     settings.layers.push_back({.representation = Representation::SpaceFilling,
                                .of = "protein and resid 25 and not hydrogen"});
@@ -153,7 +149,7 @@ TEST_CASE("a layer is drawn besides, and of its selection alone", "[view][layers
 }
 
 TEST_CASE("a surface is closed, and made of the protein alone", "[view][layers]") {
-    const World world = protease_world();
+    const World world = test::protease_world();
     const FrameScene frame = build_frame(world, plain(Representation::Surface));
     REQUIRE_FALSE(frame.meshes.empty());
     CHECK(is_closed(frame.meshes));
@@ -167,7 +163,7 @@ TEST_CASE("a surface is closed, and made of the protein alone", "[view][layers]"
 }
 
 TEST_CASE("frames of one builder are as those built alone", "[view][layers]") {
-    World world = protease_world();
+    World world = test::protease_world();
     ViewSettings settings = plain(Representation::Cartoon);
     settings.layers.push_back({.representation = Representation::Surface, .of = "resid 20:40"});
     FrameBuilder builder;
@@ -220,7 +216,7 @@ TEST_CASE("what selections mean is kept until atoms move or others are there", "
 }
 
 TEST_CASE("labels name residues and atoms", "[view][layers]") {
-    const World world = protease_world();
+    const World world = test::protease_world();
     ViewSettings settings = plain(Representation::Cartoon);
     settings.labels = {"protein and resid 25", "protein and resid 50 and name CD"};
     std::vector<ViewLabel> labels;
@@ -231,7 +227,7 @@ TEST_CASE("labels name residues and atoms", "[view][layers]") {
 }
 
 TEST_CASE("a selection that is none is refused with its column", "[view][layers]") {
-    const World world = protease_world();
+    const World world = test::protease_world();
     ViewSettings settings = plain(Representation::Cartoon);
     settings.layers.push_back({.representation = Representation::Surface, .of = "protien"});
     CHECK_THAT(load_error_of([&] { (void)build_frame(world, settings); }),
@@ -239,7 +235,7 @@ TEST_CASE("a selection that is none is refused with its column", "[view][layers]
 }
 
 TEST_CASE("colours stand for numbers of the world", "[view][colours]") {
-    World world = protease_world();
+    World world = test::protease_world();
     AtomTable& atoms = world.resource<AtomTable>();
     const std::vector<ResidueSpan> residues = find_residues(world);
     ResidueStructure found;

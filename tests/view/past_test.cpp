@@ -117,8 +117,7 @@ TEST_CASE("the ghost and what is old of the trail have the colour of the backgro
 
 TEST_CASE("the ghost has residues around that moved by 0.5 Å, and no hydrogens on carbon",
           "[view][past]") {
-    World world =
-        load_world(read_scene(test::in_project("scenes/hiv"), std::vector<std::string>()));
+    World world = test::protease_world();
     AtomTable& atoms = world.resource<AtomTable>();
     const std::vector<ResidueSpan> residues = find_residues(world);
     const std::vector<bool> pocket = find_pocket(world, residues);

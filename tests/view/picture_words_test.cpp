@@ -22,14 +22,14 @@ using namespace palpa;
 
 namespace {
 
-constexpr std::uint32_t width = 640, height = 480;
+constexpr std::uint32_t picture_width = 640, picture_height = 480;
 constexpr int gap = 2;
 
 PlacedLabels place(const std::vector<ViewLabel>& labels, const FrameCamera& camera = {}) {
     std::vector<TextSize> sizes;
     for (const ViewLabel& label : labels)
         sizes.push_back({8 * static_cast<int>(label.text.size()), 16});
-    return place_labels(labels, sizes, camera, {width, height, gap, {}});
+    return place_labels(labels, sizes, camera, {picture_width, picture_height, gap, {}});
 }
 
 bool has(const PlacedLabels& found, std::size_t label) {
@@ -68,9 +68,10 @@ TEST_CASE("labels stand beside their places, inside of the picture, and never on
         CHECK(box.width() == 48);
         CHECK(box.left >= 0);
         CHECK(box.top >= 0);
-        CHECK(box.right <= static_cast<int>(width));
-        CHECK(box.bottom <= static_cast<int>(height));
-        CHECK(distance(project({}, labels[label].place, width, height), box) < 2 * 16);
+        CHECK(box.right <= static_cast<int>(picture_width));
+        CHECK(box.bottom <= static_cast<int>(picture_height));
+        CHECK(distance(project({}, labels[label].place, picture_width, picture_height), box) <
+              2 * 16);
         for (std::size_t k = 0; k < i; ++k) {
             const PixelBox& other = found.placed[k].box;
             const PixelBox wide{other.left - gap, other.top - gap, other.right + gap,
@@ -118,10 +119,12 @@ TEST_CASE("what is behind the camera or beside the picture has no label", "[view
 TEST_CASE("labels keep away from what is there", "[view][words]") {
     const std::vector<ViewLabel> label{{{0, 0, 0}, "ASP 25"}};
     const std::vector<TextSize> size{{48, 16}};
-    const LabelRoom all_taken{width, height, gap, {{0, 0, width, height}}};
+    const LabelRoom all_taken{
+        picture_width, picture_height, gap, {{0, 0, picture_width, picture_height}}};
     CHECK(place_labels(label, size, {}, all_taken).unplaced == 1);
-    const PixelBox right{static_cast<int>(width) / 2, 0, width, height};
-    const PlacedLabels found = place_labels(label, size, {}, {width, height, gap, {right}});
+    const PixelBox right{static_cast<int>(picture_width) / 2, 0, picture_width, picture_height};
+    const PlacedLabels found =
+        place_labels(label, size, {}, {picture_width, picture_height, gap, {right}});
     REQUIRE(found.placed.size() == 1);
     CHECK(found.placed[0].box.right <= right.left - gap);
 }
@@ -133,30 +136,31 @@ TEST_CASE("a legend and a label are on the picture, each where it belongs", "[vi
     } catch (const LoadError& error) {
         return test::skip(error.what());
     }
-    Picture picture{width, height, white(width, height), {}, {}};
+    Picture picture{picture_width, picture_height, white(picture_width, picture_height), {}, {}};
     PictureWords words{{{{1, 1, 0}, "ASP 25"}}, {{{1, 0, 0}, "helix"}, {{0, 0, 1}, "strand"}}};
 
     const LeftOutWords left_out = write_words(words, {}, *painter, picture);
 
     CHECK(left_out.labels == 0);
     CHECK_FALSE(left_out.has_legend);
-    const glm::vec3 place = project({}, words.labels[0].place, width, height);
+    const glm::vec3 place = project({}, words.labels[0].place, picture_width, picture_height);
     int red = 0, blue = 0, beside = 0, elsewhere = 0;
-    for (std::uint32_t y = 0; y < height; ++y) {
-        for (std::uint32_t x = 0; x < width; ++x) {
-            const std::uint8_t* const pixel = &picture.rgba[std::size_t{4} * (y * width + x)];
+    for (std::uint32_t y = 0; y < picture_height; ++y) {
+        for (std::uint32_t x = 0; x < picture_width; ++x) {
+            const std::uint8_t* const pixel =
+                &picture.rgba[std::size_t{4} * (y * picture_width + x)];
             const bool is_red = pixel[0] == 255 && pixel[1] == 0 && pixel[2] == 0;
             const bool is_blue = pixel[0] == 0 && pixel[1] == 0 && pixel[2] == 255;
             red += is_red ? 1 : 0;
             blue += is_blue ? 1 : 0;
             if ((is_red || is_blue)) {
                 CHECK(x < 40);
-                CHECK(y > height - 60);
+                CHECK(y > picture_height - 60);
             }
             if (pixel[0] > 128) continue;  // dark: letters
             const bool is_near = std::abs(static_cast<float>(x) - place.x) < 80 &&
                                  std::abs(static_cast<float>(y) - place.y) < 40;
-            const bool is_in_corner = x < 120 && y > height - 60;
+            const bool is_in_corner = x < 120 && y > picture_height - 60;
             beside += is_near ? 1 : 0;
             elsewhere += is_near || is_in_corner ? 0 : 1;
         }

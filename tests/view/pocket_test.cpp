@@ -29,8 +29,6 @@ SceneDescription protease_scene() {
     return read_scene(test::in_project("scenes/hiv"), std::vector<std::string>());
 }
 
-World protease() { return load_world(protease_scene()); }
-
 }  // namespace
 
 TEST_CASE("a pocket is the residues with an atom within 4.5 Å of the molecule in hand",
@@ -103,7 +101,7 @@ TEST_CASE("a residue ends where its molecule does, wherever the one in hand stan
 }
 
 TEST_CASE("a pocket is a cartoon, with sticks near to what is held", "[view][pocket]") {
-    const World world = protease();
+    const World world = test::protease_world();
     const AtomTable& atoms = world.resource<AtomTable>();
     const FrameScene frame = build_frame(world, {.representation = Representation::Pocket});
     const std::vector<bool> pocket = find_pocket(world, find_residues(world));

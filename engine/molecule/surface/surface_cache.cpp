@@ -16,7 +16,7 @@ namespace {
 
 // Cells of the grid of atoms, Å: small against the reach of an atom.
 constexpr double grid_edge = 3;
-constexpr double farthest_point = 500000;  // in lattice spacings
+constexpr double most_spacings = 500000;  // of the lattice, from its origin
 const Vec3 nowhere = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
 
 std::unique_ptr<SurfaceField> make_field(const SurfaceSettings& settings) {
@@ -53,7 +53,7 @@ SurfaceCache::SurfaceCache(std::vector<double> radii, const SurfaceSettings& set
 
 // Where an atom has a part in the surface; elsewhere not a number.
 Vec3 SurfaceCache::usable(const Vec3& place) const {
-    const double limit = farthest_point * settings_.spacing;
+    const double limit = most_spacings * settings_.spacing;
     if (place.allFinite() && place.cwiseAbs().maxCoeff() < limit) return place;
     return nowhere;
 }

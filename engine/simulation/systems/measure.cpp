@@ -1,24 +1,22 @@
 #include "simulation/systems/measure.h"
 
+#include "math/angles.h"
 #include "molecule/measure.h"
 #include "simulation/held.h"
 #include "simulation/resources.h"
 
 #include <cstddef>
-#include <numbers>
 #include <vector>
 
 namespace palpa {
 namespace {
 
-constexpr double degrees = 180 / std::numbers::pi;
-
 double find_value(const World& world, const Mark& mark) {
     std::vector<Vec3> p;
     for (const AtomsOf& atoms : mark.atoms) p.push_back(middle_of(world, atoms));
     if (p.size() == 2) return (p[1] - p[0]).norm();
-    if (p.size() == 3) return degrees * find_angle(p[0], p[1], p[2]);
-    if (p.size() == 4) return degrees * find_dihedral(p[0], p[1], p[2], p[3]);
+    if (p.size() == 3) return degrees_per_radian * find_angle(p[0], p[1], p[2]);
+    if (p.size() == 4) return degrees_per_radian * find_dihedral(p[0], p[1], p[2], p[3]);
     return 0;
 }
 
