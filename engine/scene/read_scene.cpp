@@ -855,15 +855,16 @@ EditDescription parse_edit(std::string_view text, const TextPlace& place, FileVe
     SceneDescription scene;
     scene.second.emplace();
     try {
-        const toml::table root = parse_table(text, {});
+        const fs::path name = "edit";  // its lines count from its own start
+        const toml::table root = parse_table(text, name);
         Problems problems({});
-        Reader reader(root, {}, fs::path(place.file).parent_path(), rules_of(version), problems);
+        Reader reader(root, name, fs::path(place.file).parent_path(), rules_of(version), problems);
         visit_edits(reader, scene.edits);
         check_edits(scene, problems);
         reader.finish();
         (void)problems.finish();
     } catch (const LoadError& error) {
-        throw LoadError(place, fmt::format("bad edit: {}", error.what()));
+        throw LoadError(place, error.what());
     }
     if (scene.edits.size() != 1) {
         throw LoadError(

@@ -219,8 +219,8 @@ TEST_CASE("what a journal cannot hold is refused with its line", "[session][jour
     CHECK_THAT(error_of("c 1 {}\n"), Contains("has no 'edit'"));
     CHECK_THAT(error_of("c 1 {\"pause\":1}\n"), Contains("has no 'pause'"));
     CHECK_THAT(error_of("c 1 {\"edit\":\"[[edits]]\\nat_s = 0\\ntake = 5\"}\n"),
-               Contains("journal.txt:3") && Contains("bad edit") && Contains("take"));
-    CHECK_THAT(error_of("c 1 {\"edit\":\"a = 1\"}\n"), Contains("bad edit"));
+               Contains("journal.txt:3:1: edit:3:8:") && Contains("take"));
+    CHECK_THAT(error_of("c 1 {\"edit\":\"a = 1\"}\n"), Contains("journal.txt:3:1: edit:1:1:"));
     // A journal may come from anybody.
     for (const char* const file : {"/etc/passwd", "../x.crd", "inputs/../../x.crd"}) {
         CHECK_THAT(

@@ -187,7 +187,7 @@ TEST_CASE("nothing goes back onto what is there now, or out of another hand",
 }
 
 TEST_CASE("after adding and removing a molecule the world is what it was, to the byte",
-          "[simulation][edit]") {
+          "[simulation][edit][slow]") {
     struct Row {
         std::string file;
         std::vector<std::string> settings;

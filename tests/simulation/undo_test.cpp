@@ -226,7 +226,7 @@ struct Scene {
 }  // namespace
 
 TEST_CASE("a thousand random sequences of edits and moves are undone and redone, to the byte",
-          "[simulation][edit]") {
+          "[simulation][edit][slow]") {
     const Settings rigid{"molecules.held.shape=rigid", "molecules.resting.shape=rigid"};
     const std::string waters = test::in_project("scenes/water/"),
                       peptides = test::test_data("two_peptides");
