@@ -603,7 +603,9 @@ private:
     void report_unknown_keys(const Level& level) {
         const std::vector<std::string_view> known(level.known.begin(), level.known.end());
         const std::vector<toml::key> unknown = find_unknown_keys(level);
-        if (unknown.empty() && !level.lacks.empty()) problem(level.place, level.lacks);
+        // Otherwise the unknown key is the likely cause, and its own message says what is expected.
+        if (!level.lacks.empty() && (unknown.empty() || rules_.leaves_out_unknown))
+            problem(level.place, level.lacks);
         for (const toml::key& key : unknown) {
             const TextPlace place = place_of(key.source());
             const std::string name = level.path + std::string(key.str());

@@ -130,6 +130,15 @@ TEST_CASE("of a newer minor format what is unknown is left out with a note", "[s
     CHECK_THAT(refusal_of(scene_text("format = \"2.0\"", later)), Contains("unknown key"));
 }
 
+TEST_CASE(
+    "of a newer minor format an edit of an unknown kind is refused, for nothing is left of it",
+    "[scene][format]") {
+    const std::string edit = "[[edits]]\nat_s = 1\nevaporate = { molecule = \"moved\" }\n";
+
+    CHECK_THAT(refusal_of(scene_text("format = \"2.99\"", edit)),
+               Contains("has none of the keys") && Contains("expected one of them"));
+}
+
 TEST_CASE("a newer major format is refused with what to do, whatever else is wrong",
           "[scene][format]") {
     CHECK_THAT(refusal_of("[later]\nkey = 1\n" + scene_text("")), Contains("unknown key 'later'"));
