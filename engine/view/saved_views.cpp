@@ -1,4 +1,5 @@
 #include "view/saved_views.h"
+
 #include "math/angles.h"
 
 #include <fmt/format.h>

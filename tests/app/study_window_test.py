@@ -59,6 +59,7 @@ class StudyWindow(unittest.TestCase):
             both = self.rows(folder)
 
             # On a busy machine a press that came late may have ended one trial more.
+            self.assertIn(len(first), (2, 3))
             self.assertIn(f"{len(first)} of 4 trials", out)
             self.assertEqual(both[:len(first)], first)
             self.assertEqual({row["mode"] for row in first[:2]}, {"4", "guarded"})
