@@ -1,10 +1,16 @@
-"""The lessons of whole proteins: a hand that holds still or wanders does not do them."""
+"""The lessons of whole proteins: the emulated operator does them, a hand that holds still or wanders
+does not."""
 import unittest
 
-from lessons_test import LONG, check_that_it_is_not_done
+from lessons_test import LONG, check_that_it_is_not_done, check_that_the_operator_does_it, lessons
 
 
 class LongLessons(unittest.TestCase):
+    def test_the_operator_does_every_step(self):
+        for lesson in lessons():
+            if lesson["name"] in LONG:
+                check_that_the_operator_does_it(self, lesson)
+
     def test_a_hand_that_knows_nothing_does_none(self):
         for name in LONG:
             check_that_it_is_not_done(self, name)
