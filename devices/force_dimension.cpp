@@ -1,6 +1,7 @@
 #include "devices/force_dimension.h"
 
 #include "devices/device_nodes.h"
+#include "devices/maker_library.h"
 #include "platform/thread.h"
 
 #include <fmt/format.h>
@@ -17,10 +18,6 @@
 
 namespace palpa {
 namespace {
-
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
-// Further from its base no handle gets; a reading that says so is none.
-constexpr double farthest_m = 1;
 
 // USB ids that open programs' rules name: Force Dimension's controllers, and Novint's Falcon.
 constexpr std::array usb_ids{UsbId{0x1451, 0x0301}, UsbId{0x1451, 0x0402}, UsbId{0x1451, 0x0403},
@@ -98,44 +95,12 @@ std::string last_error(const dhd::Library& library) {
     return text && *text != '\0' ? text : "the library does not say why";
 }
 
-DeviceCheck check_library(const dhd::LibrarySearch& search) {
-    if (search.is_found) return {"library", CheckOutcome::Ok, search.path, ""};
-    return {"library", CheckOutcome::Failed,
-            fmt::format("none could be loaded: {}", fmt::join(search.tried, "; ")), dhd_remedy};
-}
-
-DeviceCheck check_symbols(const dhd::LibrarySearch& search) {
-    if (search.missing.empty()) return {"symbols", CheckOutcome::Ok, "all functions are there", ""};
-    return {"symbols", CheckOutcome::Failed,
-            fmt::format("missing: {}", fmt::join(search.missing, ", ")),
-            "install version 3.7 or newer of the Force Dimension SDK"};
-}
-
-// Neither is a reason to give up: ids that nobody has told yet do not show.
 void check_system(const std::filesystem::path& root, std::vector<DeviceCheck>& checks) {
-    const std::vector<FoundDevice> found = find_raw_usb_devices(root, usb_ids);
-    if (found.empty()) {
-        checks.push_back({"bus", CheckOutcome::Unknown, "no device with a known id on USB",
-                          "check power and cable; 'lsusb' shows Force Dimension's as 1451:..., a "
-                          "Falcon as 0403:cb48"});
-        return;
-    }
-    std::vector<std::string> where, nodes, closed;
-    for (const FoundDevice& device : found) {
-        where.push_back(device.where);
-        for (const auto& node : device.nodes) nodes.push_back(node.string());
-        for (const auto& node : device.closed) closed.push_back(node.string());
-    }
-    checks.push_back({"bus", CheckOutcome::Ok, fmt::format("{}", fmt::join(where, ", ")), ""});
-    if (!closed.empty()) {
-        checks.push_back(
-            {"permission", CheckOutcome::Failed,
-             fmt::format("{} may not be read and written by this user", fmt::join(closed, ", ")),
-             std::string(udev_remedy)});
-    } else {
-        checks.push_back({"permission", CheckOutcome::Ok,
-                          fmt::format("{} can be read and written", fmt::join(nodes, ", ")), ""});
-    }
+    add_bus_checks(find_raw_usb_devices(root, usb_ids),
+                   {"bus", CheckOutcome::Unknown, "no device with a known id on USB",
+                    "check power and cable; 'lsusb' shows Force Dimension's as 1451:..., a "
+                    "Falcon as 0403:cb48"},
+                   checks);
 }
 
 DeviceCheck check_calibration(const std::array<int, dhd::most_status>& status, bool is_told) {
@@ -291,7 +256,7 @@ bool ForceDimension::take_pose(DeviceReading& reading) noexcept {
     constexpr double rounding = 1e-2;
     const bool is_turn =
         (turn * turn.transpose() - Mat3::Identity()).norm() < rounding && turn.determinant() > 0;
-    if (!place.allFinite() || place.norm() > farthest_m || !is_turn) return true;
+    if (!place.allFinite() || place.norm() > farthest_reading_m || !is_turn) return true;
     reading.position_m = turn_of_axes() * place;
     reading.orientation =
         Quat(Mat3(turn_of_axes() * turn * turn_of_axes().transpose())).normalized();
@@ -335,9 +300,10 @@ OpenedDevice open_force_dimension(const ForceDimensionSettings& settings,
     const bool is_whole = search.is_found && search.missing.empty();
     // The reason is the last check; that the device was seen stands before it.
     if (!is_whole) check_system(request.system_root, checks);
-    checks.push_back(check_library(search));
+    checks.push_back(check_library(search, dhd_remedy));
     if (!search.is_found) return opened;
-    checks.push_back(check_symbols(search));
+    checks.push_back(
+        check_symbols(search, "install version 3.7 or newer of the Force Dimension SDK"));
     if (!is_whole) return opened;
     check_system(request.system_root, checks);
     const dhd::Library& library = search.library;

@@ -2,6 +2,8 @@
 // for Novint's Falcon, found while the program runs. What it exports is declared here from the
 // documented interface: names, types and numbers. It is thread-safe, and serves several devices.
 #pragma once
+#include "devices/maker_library.h"
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -43,12 +45,8 @@ struct Library {
     const char* (*error_get_last_str)() = nullptr;                 // last error of this thread
 };
 
-struct LibrarySearch {
-    bool is_found = false;
-    Library library;                   // complete if `missing` is empty
-    std::string path;                  // where it was found
-    std::vector<std::string> tried;    // names tried, each with the reason of the failure
-    std::vector<std::string> missing;  // names of missing functions
+struct LibrarySearch : palpa::LibrarySearch {
+    Library library;  // complete if `missing` is empty
 };
 
 // Loads `path` if it is given, otherwise tries the names under which the library is installed. The

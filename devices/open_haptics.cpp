@@ -1,6 +1,7 @@
 #include "devices/open_haptics.h"
 
 #include "devices/device_nodes.h"
+#include "devices/maker_library.h"
 
 #include <fmt/format.h>
 #include <Eigen/LU>
@@ -8,7 +9,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -16,9 +16,6 @@ namespace palpa {
 namespace {
 
 constexpr double metre_per_mm = 1e-3;
-constexpr double unset = std::numeric_limits<double>::quiet_NaN();
-// Further from its base no stylus gets; a reading that says so is none.
-constexpr double farthest_stylus_m = 1;
 // The library sorts its callbacks by it; the middle of its range.
 constexpr unsigned short priority = 0x7FFF;
 // While the stylus has to go into its inkwell, the library is asked so often whether it is there.
@@ -96,9 +93,9 @@ hd::Handle find_device(const hd::Library& library, const std::string& wanted, hd
 // No number where the library does not know.
 double query(const hd::Library& library, hd::Code parameter) {
     std::array<double, 16> values{};  // more than any parameter has
-    values.fill(unset);
+    values.fill(no_value);
     library.get_doublev(parameter, values.data());
-    return first_error(library) == hd::success ? values[0] : unset;
+    return first_error(library) == hd::success ? values[0] : no_value;
 }
 
 std::string text_of(const hd::Library& library, hd::Code parameter) {
@@ -123,7 +120,7 @@ Box query_box(const hd::Library& library) {
     const Vec3 half_m = 0.5 * metre_per_mm * (high - low);
     Box box;
     if (!is_known || !half_m.allFinite() || half_m.minCoeff() <= 0) return box;
-    if (half_m.maxCoeff() > farthest_stylus_m) return box;
+    if (half_m.maxCoeff() > farthest_reading_m) return box;
     return {true, 0.5 * metre_per_mm * (high + low), half_m};
 }
 
@@ -137,20 +134,6 @@ int query_calibration_style(const hd::Library& library) {
     return static_cast<int>(hd::encoder_reset);
 }
 
-DeviceCheck check_library(const hd::LibrarySearch& search) {
-    if (search.is_found) return {"library", CheckOutcome::Ok, search.path, ""};
-    return {"library", CheckOutcome::Failed,
-            fmt::format("none could be loaded: {}", fmt::join(search.tried, "; ")),
-            open_haptics_remedy};
-}
-
-DeviceCheck check_symbols(const hd::LibrarySearch& search) {
-    if (search.missing.empty()) return {"symbols", CheckOutcome::Ok, "all functions are there", ""};
-    return {"symbols", CheckOutcome::Failed,
-            fmt::format("missing: {}", fmt::join(search.missing, ", ")),
-            "install OpenHaptics 3.4 or newer"};
-}
-
 std::vector<FoundDevice> find_on_bus(const std::filesystem::path& root) {
     std::vector<FoundDevice> found = find_usb_devices(root, touch_ids);
     for (FoundDevice& device : find_firewire_devices(root, "sensable")) {
@@ -159,36 +142,13 @@ std::vector<FoundDevice> find_on_bus(const std::filesystem::path& root) {
     return found;
 }
 
-// Neither is a reason to give up: a Touch with Ethernet shows in none of these places.
 void check_touch_on_bus(const std::filesystem::path& root, std::vector<DeviceCheck>& checks) {
-    const std::vector<FoundDevice> found = find_on_bus(root);
-    if (found.empty()) {
-        checks.push_back(
-            {"bus", CheckOutcome::Unknown,
-             "no device of this maker on USB or FireWire (a device on Ethernet does not show here)",
-             "check power and cable; 'lsusb' shows a Touch as 2988:0302 or 2988:0304"});
-        return;
-    }
-    std::vector<std::string> where, nodes, closed;
-    for (const FoundDevice& device : found) {
-        where.push_back(device.where);
-        for (const auto& node : device.nodes) nodes.push_back(node.string());
-        for (const auto& node : device.closed) closed.push_back(node.string());
-    }
-    checks.push_back({"bus", CheckOutcome::Ok, fmt::format("{}", fmt::join(where, ", ")), ""});
-    if (!closed.empty()) {
-        checks.push_back(
-            {"permission", CheckOutcome::Failed,
-             fmt::format("{} may not be read and written by this user", fmt::join(closed, ", ")),
-             std::string(udev_remedy)});
-    } else if (nodes.empty()) {
-        checks.push_back({"permission", CheckOutcome::Unknown,
-                          "no serial, hidraw or FireWire node belongs to it",
-                          "plug it in again, and look at the end of 'sudo dmesg'"});
-    } else {
-        checks.push_back({"permission", CheckOutcome::Ok,
-                          fmt::format("{} can be read and written", fmt::join(nodes, ", ")), ""});
-    }
+    add_bus_checks(
+        find_on_bus(root),
+        {"bus", CheckOutcome::Unknown,
+         "no device of this maker on USB or FireWire (a device on Ethernet does not show here)",
+         "check power and cable; 'lsusb' shows a Touch as 2988:0302 or 2988:0304"},
+        checks);
 }
 
 DeviceCheck check_calibration(const hd::Library& library, int style) {
@@ -390,7 +350,7 @@ bool OpenHaptics::update_calibration() noexcept {
 
 DeviceReading OpenHaptics::take_reading() noexcept {
     std::array<double, 16> m{};
-    m.fill(unset);
+    m.fill(no_value);
     int buttons = 0;
     library_.get_doublev(hd::current_transform, m.data());
     library_.get_integerv(hd::current_buttons, &buttons);
@@ -403,7 +363,7 @@ DeviceReading OpenHaptics::take_reading() noexcept {
     constexpr double rounding = 1e-2;
     const bool is_turn =
         (axes * axes.transpose() - Mat3::Identity()).norm() < rounding && axes.determinant() > 0;
-    if (!place_m.allFinite() || place_m.norm() > farthest_stylus_m || !is_turn) return reading;
+    if (!place_m.allFinite() || place_m.norm() > farthest_reading_m || !is_turn) return reading;
     reading.position_m = place_m - centre_m_;
     reading.orientation = Quat(axes).normalized();
     reading.valid = true;
@@ -456,9 +416,9 @@ OpenedDevice open_haptics(const OpenHapticsSettings& settings, const DeviceReque
     const bool is_whole = search.is_found && search.missing.empty();
     // The reason is the last check; that the device was seen stands before it.
     if (!is_whole) check_touch_on_bus(request.system_root, checks);
-    checks.push_back(check_library(search));
+    checks.push_back(check_library(search, open_haptics_remedy));
     if (!search.is_found) return opened;
-    checks.push_back(check_symbols(search));
+    checks.push_back(check_symbols(search, "install OpenHaptics 3.4 or newer"));
     if (!is_whole) return opened;
     check_touch_on_bus(request.system_root, checks);
     const hd::Library& library = search.library;

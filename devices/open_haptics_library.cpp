@@ -1,61 +1,35 @@
 #include "devices/open_haptics_library.h"
 
-#include "platform/library.h"
-
 namespace palpa::hd {
-namespace {
-
-template <class Function>
-void take(const SharedLibrary& loaded, const char* name, Function& function,
-          LibrarySearch& search) {
-    void* const found = loaded.find(name);
-    if (!found) {
-        search.missing.emplace_back(name);
-        return;
-    }
-    function = reinterpret_cast<Function>(found);
-    if (search.path.empty()) search.path = loaded.path_of(found);
-}
-
-}  // namespace
 
 LibrarySearch find_library(const std::optional<std::filesystem::path>& path) {
     // As the maker's packages of 3.4 and 3.0 name it.
     std::vector<std::string> files = list_library_files("HD", {"3.4", "3.4.0", "3", "3.0"});
     if (path) files = {path->string()};
     LibrarySearch search;
-    std::optional<SharedLibrary> found;
-    for (const std::string& file : files) {
-        found.emplace(file);
-        if (found->is_open()) break;
-        search.tried.push_back(found->problem());
-        found.reset();
-    }
-    if (!found) return search;
-    const SharedLibrary& loaded = *found;
-
-    search.is_found = true;
     Library& l = search.library;
-    take(loaded, "hdInitDevice", l.init_device, search);
-    take(loaded, "hdDisableDevice", l.disable_device, search);
-    take(loaded, "hdGetCurrentDevice", l.get_current_device, search);
-    take(loaded, "hdMakeCurrentDevice", l.make_current_device, search);
-    take(loaded, "hdBeginFrame", l.begin_frame, search);
-    take(loaded, "hdEndFrame", l.end_frame, search);
-    take(loaded, "hdGetError", l.get_error, search);
-    take(loaded, "hdEnable", l.enable, search);
-    take(loaded, "hdDisable", l.disable, search);
-    take(loaded, "hdGetIntegerv", l.get_integerv, search);
-    take(loaded, "hdGetDoublev", l.get_doublev, search);
-    take(loaded, "hdGetString", l.get_string, search);
-    take(loaded, "hdSetDoublev", l.set_doublev, search);
-    take(loaded, "hdCheckCalibration", l.check_calibration, search);
-    take(loaded, "hdUpdateCalibration", l.update_calibration, search);
-    take(loaded, "hdSetSchedulerRate", l.set_scheduler_rate, search);
-    take(loaded, "hdStartScheduler", l.start_scheduler, search);
-    take(loaded, "hdStopScheduler", l.stop_scheduler, search);
-    take(loaded, "hdScheduleAsynchronous", l.schedule_asynchronous, search);
-    take(loaded, "hdUnschedule", l.unschedule, search);
+    MakerLibrary library(files, search);
+    if (!search.is_found) return search;
+    library.take("hdInitDevice", l.init_device);
+    library.take("hdDisableDevice", l.disable_device);
+    library.take("hdGetCurrentDevice", l.get_current_device);
+    library.take("hdMakeCurrentDevice", l.make_current_device);
+    library.take("hdBeginFrame", l.begin_frame);
+    library.take("hdEndFrame", l.end_frame);
+    library.take("hdGetError", l.get_error);
+    library.take("hdEnable", l.enable);
+    library.take("hdDisable", l.disable);
+    library.take("hdGetIntegerv", l.get_integerv);
+    library.take("hdGetDoublev", l.get_doublev);
+    library.take("hdGetString", l.get_string);
+    library.take("hdSetDoublev", l.set_doublev);
+    library.take("hdCheckCalibration", l.check_calibration);
+    library.take("hdUpdateCalibration", l.update_calibration);
+    library.take("hdSetSchedulerRate", l.set_scheduler_rate);
+    library.take("hdStartScheduler", l.start_scheduler);
+    library.take("hdStopScheduler", l.stop_scheduler);
+    library.take("hdScheduleAsynchronous", l.schedule_asynchronous);
+    library.take("hdUnschedule", l.unschedule);
     return search;
 }
 

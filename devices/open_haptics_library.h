@@ -2,6 +2,8 @@
 // loaded at run time. Its names, types and numbers are declared here from the documented interface.
 // It has one scheduler and one current device for each process.
 #pragma once
+#include "devices/maker_library.h"
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -79,12 +81,8 @@ struct Library {
     void (*unschedule)(Schedule) = nullptr;
 };
 
-struct LibrarySearch {
-    bool is_found = false;
-    Library library;                   // complete if nothing is missing
-    std::string path;                  // where it was found
-    std::vector<std::string> tried;    // each with why it could not be loaded
-    std::vector<std::string> missing;  // functions
+struct LibrarySearch : palpa::LibrarySearch {
+    Library library;  // complete if `missing` is empty
 };
 
 // Tries `path` alone if there is one, otherwise the names under which the library is installed. It

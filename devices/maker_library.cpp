@@ -1,0 +1,69 @@
+#include "devices/maker_library.h"
+
+#include <fmt/format.h>
+#include <utility>
+
+namespace palpa {
+
+MakerLibrary::MakerLibrary(std::span<const std::string> files, LibrarySearch& search)
+    : search_(search) {
+    for (const std::string& file : files) {
+        loaded_.emplace(file);
+        if (loaded_->is_open()) break;
+        search_.tried.push_back(loaded_->problem());
+        loaded_.reset();
+    }
+    search_.is_found = loaded_.has_value();
+}
+
+void* MakerLibrary::find(const char* name) {
+    void* const found = loaded_ ? loaded_->find(name) : nullptr;
+    if (!found) {
+        search_.missing.emplace_back(name);
+    } else if (search_.path.empty()) {
+        search_.path = loaded_->path_of(found);
+    }
+    return found;
+}
+
+DeviceCheck check_library(const LibrarySearch& search, std::string remedy) {
+    if (search.is_found) return {"library", CheckOutcome::Ok, search.path, ""};
+    return {"library", CheckOutcome::Failed,
+            fmt::format("none could be loaded: {}", fmt::join(search.tried, "; ")),
+            std::move(remedy)};
+}
+
+DeviceCheck check_symbols(const LibrarySearch& search, std::string remedy) {
+    if (search.missing.empty()) return {"symbols", CheckOutcome::Ok, "all functions are there", ""};
+    return {"symbols", CheckOutcome::Failed,
+            fmt::format("missing: {}", fmt::join(search.missing, ", ")), std::move(remedy)};
+}
+
+void add_bus_checks(std::span<const FoundDevice> found, DeviceCheck none,
+                    std::vector<DeviceCheck>& checks) {
+    if (found.empty()) {
+        checks.push_back(std::move(none));
+        return;
+    }
+    std::vector<std::string> where, nodes, closed;
+    for (const FoundDevice& device : found) {
+        where.push_back(device.where);
+        for (const auto& node : device.nodes) nodes.push_back(node.string());
+        for (const auto& node : device.closed) closed.push_back(node.string());
+    }
+    checks.push_back({"bus", CheckOutcome::Ok, fmt::format("{}", fmt::join(where, ", ")), ""});
+    if (!closed.empty()) {
+        checks.push_back(
+            {"permission", CheckOutcome::Failed,
+             fmt::format("{} may not be read and written by this user", fmt::join(closed, ", ")),
+             std::string(udev_remedy)});
+    } else if (nodes.empty()) {
+        checks.push_back({"permission", CheckOutcome::Unknown, "no node below /dev belongs to it",
+                          "plug it in again, and look at the end of 'sudo dmesg'"});
+    } else {
+        checks.push_back({"permission", CheckOutcome::Ok,
+                          fmt::format("{} can be read and written", fmt::join(nodes, ", ")), ""});
+    }
+}
+
+}  // namespace palpa
