@@ -1,5 +1,7 @@
 #include "devices/force_dimension_library.h"
 
+#include "platform/library.h"
+
 #include <utility>
 
 namespace palpa::dhd {
@@ -17,8 +19,7 @@ std::vector<std::string> list_names() {
 LibrarySearch find_library(const std::optional<std::filesystem::path>& path) {
     LibrarySearch search;
     Library& l = search.library;
-    MakerLibrary library(path ? std::vector{path->string()} : list_names(), search);
-    if (!search.is_found) return search;
+    MakerLibrary library(path, list_names(), search);
     library.take("dhdOpen", l.open);
     library.take("dhdClose", l.close);
     library.take("dhdGetSystemType", l.get_system_type);

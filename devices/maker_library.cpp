@@ -5,9 +5,11 @@
 
 namespace palpa {
 
-MakerLibrary::MakerLibrary(std::span<const std::string> files, LibrarySearch& search)
+MakerLibrary::MakerLibrary(const std::optional<std::filesystem::path>& path,
+                           std::vector<std::string> names, LibrarySearch& search)
     : search_(search) {
-    for (const std::string& file : files) {
+    if (path) names = {path->string()};
+    for (const std::string& file : names) {
         loaded_.emplace(file);
         if (loaded_->is_open()) break;
         search_.tried.push_back(loaded_->problem());
@@ -17,7 +19,7 @@ MakerLibrary::MakerLibrary(std::span<const std::string> files, LibrarySearch& se
 }
 
 void* MakerLibrary::find(const char* name) {
-    void* const found = loaded_ ? loaded_->find(name) : nullptr;
+    void* const found = loaded_->find(name);
     if (!found) {
         search_.missing.emplace_back(name);
     } else if (search_.path.empty()) {

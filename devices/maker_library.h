@@ -4,6 +4,7 @@
 #include "devices/device_nodes.h"
 #include "platform/library.h"
 
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <span>
@@ -27,13 +28,16 @@ struct LibrarySearch {
 // threads may outlive every device.
 class MakerLibrary {
 public:
-    // `search` receives the result and has to outlive this.
-    MakerLibrary(std::span<const std::string> files, LibrarySearch& search);
+    // Tries `path` alone if it is given, otherwise `names`. `search` receives the result and has to
+    // outlive this.
+    MakerLibrary(const std::optional<std::filesystem::path>& path, std::vector<std::string> names,
+                 LibrarySearch& search);
 
-    // Sets `function` to the function of this name, or adds the name to the missing ones.
+    // Sets `function` to the function of this name, or adds the name to the missing ones. Does
+    // nothing if no library was found.
     template <class Function>
     void take(const char* name, Function& function) {
-        function = reinterpret_cast<Function>(find(name));
+        if (loaded_) function = reinterpret_cast<Function>(find(name));
     }
 
 private:

@@ -1,15 +1,14 @@
 #include "devices/open_haptics_library.h"
 
+#include "platform/library.h"
+
 namespace palpa::hd {
 
 LibrarySearch find_library(const std::optional<std::filesystem::path>& path) {
-    // As the maker's packages of 3.4 and 3.0 name it.
-    std::vector<std::string> files = list_library_files("HD", {"3.4", "3.4.0", "3", "3.0"});
-    if (path) files = {path->string()};
     LibrarySearch search;
     Library& l = search.library;
-    MakerLibrary library(files, search);
-    if (!search.is_found) return search;
+    // As the maker's packages of 3.4 and 3.0 name it.
+    MakerLibrary library(path, list_library_files("HD", {"3.4", "3.4.0", "3", "3.0"}), search);
     library.take("hdInitDevice", l.init_device);
     library.take("hdDisableDevice", l.disable_device);
     library.take("hdGetCurrentDevice", l.get_current_device);

@@ -16,8 +16,8 @@ void wait_until(const Condition& condition, const std::string& what = "what anot
         if (std::chrono::steady_clock::now() - begun > longest) {
             throw std::runtime_error("waited for a minute in vain: " + what);
         }
-        std::this_thread::sleep_for(
-            std::chrono::microseconds(20));  // the core is left to the other
+        // The core is left to the other thread.
+        std::this_thread::sleep_for(std::chrono::microseconds(20));
     }
 }
 

@@ -1,4 +1,4 @@
-"""Every lesson: the emulated operator does it, a hand that holds still or wanders does not."""
+"""Every lesson but those of whole proteins: the emulated operator does it, a hand that holds still or wanders does not."""
 import json
 import os
 import pathlib
