@@ -24,11 +24,6 @@ struct DeviceCheck {
     std::string remedy;  // a command, or what to do by hand; empty if nothing needs fixing
 };
 
-// The remedy if this user may not read or write a node below /dev.
-inline constexpr std::string_view udev_remedy =
-    "sudo cp devices/udev/70-palpa.rules /etc/udev/rules.d/ && sudo udevadm control --reload && "
-    "sudo udevadm trigger";
-
 // What is needed to open a device.
 struct DeviceRequest {
     EmulatedOmniSettings emulated;  // settings of the emulated device and of the hand on it

@@ -1,8 +1,10 @@
 #include "devices/device_nodes.h"
 
 #include "core/files.h"
+#include "core/shell_word.h"
 #include "core/text.h"
 #include "platform/file.h"
+#include "platform/program.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -55,6 +57,17 @@ std::string lower(std::string text) {
 }
 
 }  // namespace
+
+std::string udev_remedy() {
+    const fs::path program = find_program_file().parent_path();
+    const fs::path installed = (program / "../lib/udev/rules.d/70-palpa.rules").lexically_normal();
+    std::error_code error;
+    const bool is_installed = !program.empty() && fs::exists(installed, error);
+    return fmt::format(
+        "sudo cp {} /etc/udev/rules.d/ && sudo udevadm control --reload && sudo "
+        "udevadm trigger",
+        is_installed ? shell_word(installed.string()) : "devices/udev/70-palpa.rules");
+}
 
 bool is_open_to_user(const fs::path& node) { return may_read_and_write(node); }
 

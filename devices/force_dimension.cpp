@@ -34,7 +34,7 @@ const Mat3& turn_of_axes() {
     return turn;
 }
 
-// What the library does not tell. Peaks and half widths are those that CHAI3D (cDeltaDevices) has
+// What the library does not say. Peaks and half widths are those that CHAI3D (cDeltaDevices) has
 // for the same devices; a sigma or lambda, stronger and larger, counts as an omega.
 struct Limits {
     double peak_newton, half_m;
@@ -103,8 +103,8 @@ void check_system(const std::filesystem::path& root, std::vector<DeviceCheck>& c
                    checks);
 }
 
-DeviceCheck check_calibration(const std::array<int, dhd::most_status>& status, bool is_told) {
-    if (!is_told) return {"calibration", CheckOutcome::Unknown, "the library does not say", ""};
+DeviceCheck check_calibration(const std::array<int, dhd::most_status>& status, bool has_status) {
+    if (!has_status) return {"calibration", CheckOutcome::Unknown, "the library does not say", ""};
     if (status[dhd::status_reset] == 0) return {"calibration", CheckOutcome::Ok, "done", ""};
     return {"calibration", CheckOutcome::Failed, "the device is waiting for its calibration",
             "move the handle to its rest position until the light stops blinking (omega or sigma: "
@@ -135,13 +135,15 @@ ForceDimension::~ForceDimension() {
 }
 
 void ForceDimension::close() noexcept {
-    if (is_closing_.exchange(true)) return;
-    {
-        const std::lock_guard lock(mutex_);
-        is_over_ = true;
-    }
-    wake_.notify_one();
-    if (thread_.joinable()) thread_.join();
+    std::call_once(closed_, [this] {
+        is_closing_ = true;
+        {
+            const std::lock_guard lock(mutex_);
+            is_over_ = true;
+        }
+        wake_.notify_one();
+        if (thread_.joinable()) thread_.join();
+    });
 }
 
 DeviceReading ForceDimension::read() noexcept {
@@ -210,6 +212,7 @@ void ForceDimension::start() noexcept {
     (void)library_.enable_force(dhd::on, *id_);
     failed_ticks_ = refused_left_ticks_ = 0;
     state_ = State::Ready;
+    look_at_status();  // before its first position: it may have lost its calibration
 }
 
 void ForceDimension::stop() noexcept {
@@ -226,8 +229,8 @@ void ForceDimension::tick() noexcept {
     const State state = state_;
     Vec3 force = forces_.take(spec_.peak_force_newton);
     if (state != State::Ready || !answers) force.setZero();
-    const Vec3 told = turn_of_axes().transpose() * force;
-    answers = library_.set_force(told.x(), told.y(), told.z(), *id_) >= 0 && answers;
+    const Vec3 played = turn_of_axes().transpose() * force;
+    answers = library_.set_force(played.x(), played.y(), played.z(), *id_) >= 0 && answers;
 
     failed_ticks_ = answers ? 0 : failed_ticks_ + 1;
     reading.valid = reading.valid && answers && state != State::NeedsCalibration;
@@ -311,7 +314,8 @@ OpenedDevice open_force_dimension(const ForceDimensionSettings& settings,
     if (!id) {
         checks.push_back({"init", CheckOutcome::Failed, last_error(library),
                           "check power and cable, and end other programs that use the device; on "
-                          "Linux the user needs permission (devices/README.md)"});
+                          "Linux the user needs permission: " +
+                              udev_remedy()});
         return opened;
     }
     const char* const name = library.get_system_name(*id);

@@ -60,7 +60,7 @@ public:
     std::string_view status() const noexcept override;
 
     // Sets the force to zero, switches the motors off and closes the device; also at exit(). A
-    // second call does nothing.
+    // second call waits for the first, and does nothing.
     void close() noexcept;
 
 private:
@@ -92,6 +92,7 @@ private:
     // used by the servo
     DeviceReading last_;
 
+    std::once_flag closed_;
     std::mutex mutex_;
     std::condition_variable wake_;
     bool is_over_ = false;  // tells its thread to end

@@ -91,7 +91,7 @@ DeviceCheck check_permission(const HidPlace& place) {
         return {"permission", CheckOutcome::Ok, place.path + " can be read and written", ""};
     }
     return {"permission", CheckOutcome::Failed,
-            place.path + " may not be read and written by this user", std::string(udev_remedy)};
+            place.path + " may not be read and written by this user", udev_remedy()};
 }
 
 DeviceCheck check_first_report(const HidDevice& device, bool is_talkative) {

@@ -11,7 +11,10 @@ MakerLibrary::MakerLibrary(const std::optional<std::filesystem::path>& path,
     if (path) names = {path->string()};
     for (const std::string& file : names) {
         loaded_.emplace(file);
-        if (loaded_->is_open()) break;
+        if (loaded_->is_open()) {
+            search_.path = file;
+            break;
+        }
         search_.tried.push_back(loaded_->problem());
         loaded_.reset();
     }
@@ -22,7 +25,7 @@ void* MakerLibrary::find(const char* name) {
     void* const found = loaded_->find(name);
     if (!found) {
         search_.missing.emplace_back(name);
-    } else if (search_.path.empty()) {
+    } else if (!std::exchange(is_located_, true)) {
         search_.path = loaded_->path_of(found);
     }
     return found;
@@ -58,7 +61,7 @@ void add_bus_checks(std::span<const FoundDevice> found, DeviceCheck none,
         checks.push_back(
             {"permission", CheckOutcome::Failed,
              fmt::format("{} may not be read and written by this user", fmt::join(closed, ", ")),
-             std::string(udev_remedy)});
+             udev_remedy()});
     } else if (nodes.empty()) {
         checks.push_back({"permission", CheckOutcome::Unknown, "no node below /dev belongs to it",
                           "plug it in again, and look at the end of 'sudo dmesg'"});

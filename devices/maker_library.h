@@ -19,7 +19,7 @@ inline constexpr double farthest_reading_m = 1;
 
 struct LibrarySearch {
     bool is_found = false;
-    std::string path;                  // where it was found
+    std::string path;                  // where it was found; its name if that is not known
     std::vector<std::string> tried;    // names tried, each with the reason of the failure
     std::vector<std::string> missing;  // names of missing functions
 };
@@ -45,6 +45,7 @@ private:
 
     LibrarySearch& search_;
     std::optional<SharedLibrary> loaded_;
+    bool is_located_ = false;  // search_.path is that of a function found in it
 };
 
 DeviceCheck check_library(const LibrarySearch& search, std::string remedy);

@@ -80,11 +80,14 @@ hd::Handle init_device(const hd::Library& library, const std::string& name, hd::
     return hd::no_device;
 }
 
-// Under the wanted name, or else under those that the maker's programs give.
+// Under the wanted name, or else as the default device or under the names that the maker's programs
+// give. `error`: of the first of these.
 hd::Handle find_device(const hd::Library& library, const std::string& wanted, hd::Code& error) {
-    if (!wanted.empty()) return init_device(library, wanted, error);
-    for (const char* const name : {"", "Default Device", "Default PHANToM", "Left Device"}) {
-        const hd::Handle handle = init_device(library, name, error);
+    const hd::Handle first = init_device(library, wanted, error);
+    if (first != hd::no_device || !wanted.empty()) return first;
+    for (const char* const name : {"Default Device", "Default PHANToM", "Left Device"}) {
+        hd::Code ignored = hd::success;
+        const hd::Handle handle = init_device(library, name, ignored);
         if (handle != hd::no_device) return handle;
     }
     return hd::no_device;
@@ -233,7 +236,12 @@ void OpenHaptics::start() noexcept {
         [](void* self) -> hd::Code { return static_cast<OpenHaptics*>(self)->tick(); }, this,
         priority);
     library_.start_scheduler();
-    if (const hd::Code error = first_error(library_); error != hd::success) last_error_ = error;
+    const hd::Code error = first_error(library_);
+    if (error == hd::success) return;
+    // Without its ticks there is no device: keep() tries again.
+    last_error_ = error;
+    state_ = State::Lost;
+    is_lost_ = true;
 }
 
 // No tick runs any more when the scheduler has stopped: this thread may then speak for it.
@@ -252,19 +260,21 @@ void OpenHaptics::stop() noexcept {
 }
 
 void OpenHaptics::close() noexcept {
-    if (is_closing_.exchange(true)) return;
-    {
-        const std::lock_guard lock(mutex_);
-        is_over_ = true;
-    }
-    wake_.notify_one();
-    if (keeper_.joinable()) keeper_.join();
-    if (handle_ == hd::no_device) return;
-    // One more tick takes the force away gently; a scheduler that hangs is not waited for.
-    for (int i = 0; i < 50 && !played_zero_; ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    stop();
+    std::call_once(closed_, [this] {
+        is_closing_ = true;
+        {
+            const std::lock_guard lock(mutex_);
+            is_over_ = true;
+        }
+        wake_.notify_one();
+        if (keeper_.joinable()) keeper_.join();
+        if (handle_ == hd::no_device) return;
+        // One more tick takes the force away gently; a scheduler that hangs is not waited for.
+        for (int i = 0; i < 50 && !played_zero_; ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        stop();
+    });
 }
 
 DeviceReading OpenHaptics::read() noexcept {
@@ -405,7 +415,7 @@ void OpenHaptics::keep() {
             start();
         }
         lock.lock();
-        if (handle_ == hd::no_device) wake_.wait_for(lock, retry, [&] { return is_over_; });
+        if (is_lost_) wake_.wait_for(lock, retry, [&] { return is_over_; });
     }
 }
 

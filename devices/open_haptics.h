@@ -62,7 +62,7 @@ public:
     hd::Code last_error() const noexcept { return last_error_; }
 
     // Sets the force to zero, stops the scheduler and closes the device; also at exit(). A second
-    // call does nothing.
+    // call waits for the first, and does nothing.
     void close() noexcept;
 
 private:
@@ -101,6 +101,7 @@ private:
     // the servo
     DeviceReading last_;
 
+    std::once_flag closed_;
     std::mutex mutex_;
     std::condition_variable wake_;
     bool is_over_ = false;  // tells the third thread to end

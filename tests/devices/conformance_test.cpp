@@ -15,11 +15,11 @@
 #include "haptics/safety.h"
 #include "haptics/servo.h"
 #include "tests/devices/template_device.h"
-#include "tests/devices/wait_until.h"
 #include "tests/support/force_dimension_stub/load.h"
 #include "tests/support/hid_reports.h"
 #include "tests/support/open_haptics_stub/load.h"
 #include "tests/support/pid_stick.h"
+#include "tests/support/wait_until.h"
 
 #include <array>
 #include <catch2/catch.hpp>
@@ -610,10 +610,7 @@ TEMPLATE_TEST_CASE("an unplugged device costs the force, and gives it back when 
     CHECK(tick.sent_newton == Vec3::Zero());
 
     rig.plug(true);
-    while (!tick.reading.valid) {
-        std::this_thread::yield();
-        tick = servo.tick(rig);
-    }
+    test::wait_until([&] { return (tick = servo.tick(rig)).reading.valid; }, "the device");
     for (int i = 0; i < 2100; ++i) tick = servo.tick(rig);  // quiet cycles and ramp
     CHECK(tick.sent_newton.y() == Approx(0.1));
     CHECK((rig.motors() - rig.played(tick.sent_newton)).norm() < 1e-9);

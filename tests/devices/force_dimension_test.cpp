@@ -2,6 +2,7 @@
 
 #include "tests/support/force_dimension_stub/load.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait_until.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -10,7 +11,6 @@
 #include <cstring>
 #include <filesystem>
 #include <string>
-#include <thread>
 
 using namespace palpa;
 using test::ForceDimensionStub;
@@ -95,17 +95,22 @@ TEST_CASE("an omega is opened with its limits, motors on, weight carried",
 
 TEST_CASE("every type has its limits, and one that is not known an omega's",
           "[devices][force-dimension]") {
-    const auto [type, peak, outcome] = GENERATE(table<int, double, CheckOutcome>({
-        {dhd::falcon, 8, CheckOutcome::Ok},
-        {dhd::delta_3, 20, CheckOutcome::Ok},
-        {dhd::omega_7_left, 12, CheckOutcome::Ok},
-        {dhd::sigma_7, 12, CheckOutcome::Unknown},
-        {91, 12, CheckOutcome::Unknown},
-    }));
+    // Of a continuous force only an omega's is known, its peak.
+    const auto [type, peak, half_m, continuous, outcome] =
+        GENERATE(table<int, double, double, double, CheckOutcome>({
+            {dhd::falcon, 8, 0.04, 0, CheckOutcome::Ok},
+            {dhd::delta_3, 20, 0.15, 0, CheckOutcome::Ok},
+            {dhd::omega_7_left, 12, 0.075, 12, CheckOutcome::Ok},
+            {dhd::sigma_7, 12, 0.075, 0, CheckOutcome::Unknown},
+            {91, 12, 0.075, 0, CheckOutcome::Unknown},
+        }));
     CAPTURE(type);
     StubbedOmega omega(type);
 
-    CHECK(omega.device().spec().peak_force_newton == peak);
+    const DeviceSpec& spec = omega.device().spec();
+    CHECK(spec.peak_force_newton == peak);
+    CHECK(spec.continuous_force_newton == continuous);
+    CHECK(spec.half_workspace_m == Vec3::Constant(half_m));
     CHECK(dhd_check_of(omega.opened, "limits").outcome == outcome);
     CHECK(omega.stub.is_button_emulated() == (type == dhd::sigma_7));
 }
@@ -230,20 +235,41 @@ TEST_CASE("an omega that is lost is opened again by itself", "[devices][force-di
     }
     CHECK_FALSE(omega.stub.is_open());
     CHECK(omega.motors() == Vec3::Zero());
-    while (omega.device().status().empty()) std::this_thread::yield();
+    test::wait_until([&] { return !omega.device().status().empty(); }, "the loss");
     CHECK_THAT(std::string(omega.device().status()), Catch::Contains("does not answer"));
 
     omega.stub.plug(true);
     DeviceReading reading;
-    while (!reading.valid) {
-        std::this_thread::yield();
-        reading = omega.tick(Vec3::Zero());
-    }
+    test::wait_until([&] { return (reading = omega.tick(Vec3::Zero())).valid; }, "the device");
     CHECK(omega.stub.devices_opened() == 2);
     CHECK(omega.stub.is_force_enabled());
     CHECK(omega.stub.is_gravity_compensated());
     CHECK(omega.device().status().empty());
     (void)omega.tick(Vec3(0.5, 0, 0));
+    CHECK(omega.motors() == Vec3(0, 0.5, 0));
+}
+
+TEST_CASE("an omega that returns without its calibration is not believed from its first tick on",
+          "[devices][force-dimension]") {
+    StubbedOmega omega;
+    (void)omega.tick(Vec3(0.5, 0, 0), 3);
+    omega.stub.plug(false);
+    (void)omega.tick(Vec3::Zero(), ForceDimension::lost_ticks);
+    test::wait_until([&] { return !omega.device().status().empty(); }, "the loss");
+
+    omega.stub.need_calibration(true);
+    omega.stub.plug(true);
+    const auto is_back = [&] {
+        const DeviceReading reading = omega.tick(Vec3(0.5, 0, 0));
+        CHECK_FALSE(reading.valid);
+        CHECK(omega.motors() == Vec3::Zero());
+        return omega.stub.devices_opened() == 2;
+    };
+    test::wait_until(is_back, "the device");
+    for (int i = 0; i < ForceDimension::status_ticks; ++i) CHECK(is_back());
+    CHECK_THAT(std::string(omega.device().status()), Catch::Contains("calibration"));
+    omega.stub.need_calibration(false);
+    CHECK(omega.tick(Vec3(0.5, 0, 0), ForceDimension::status_ticks + 1).valid);
     CHECK(omega.motors() == Vec3(0, 0.5, 0));
 }
 

@@ -2,13 +2,13 @@
 
 #include "devices/open_device.h"
 #include "tests/support/pid_stick.h"
+#include "tests/support/wait_until.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <memory>
 #include <random>
 #include <string>
-#include <thread>
 
 using namespace palpa;
 using test::Bytes;
@@ -32,7 +32,7 @@ HidDevice& stick_of(const OpenedDevice& opened) {
 void report_to(test::HidBus& bus, int number, const HidDevice& device, const Bytes& report) {
     const std::uint64_t before = device.reports();
     bus.send(number, report);
-    while (device.reports() == before) std::this_thread::yield();
+    test::wait_until([&] { return device.reports() != before; }, "an answer to the report");
 }
 
 // All that is written for a force, in its order.
@@ -332,14 +332,13 @@ TEST_CASE("a stick that was unplugged is started anew, from its first place on",
     REQUIRE(device.read().valid);
 
     bus.unplug(number);
-    while (device.status().find("does not answer") == std::string_view::npos) {
-        std::this_thread::yield();
-    }
+    const auto status_says = [&](std::string_view words) {
+        return device.status().find(words) != std::string_view::npos;
+    };
+    test::wait_until([&] { return status_says("does not answer"); }, "the loss");
     CHECK_FALSE(device.read().valid);
     number = bus.plug(test::force_joystick_hid());
-    while (device.status().find("Move the stick") == std::string_view::npos) {
-        std::this_thread::yield();
-    }
+    test::wait_until([&] { return status_says("Move the stick"); }, "the joystick");
 
     CHECK_FALSE(device.read().valid);
     report_to(bus, number, device, test::pushed_stick(Vec3(0, -1, 0)));

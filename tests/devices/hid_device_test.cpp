@@ -3,8 +3,8 @@
 #include "devices/open_device.h"
 #include "devices/sony_pad.h"
 #include "devices/space_mouse.h"
-#include "tests/devices/wait_until.h"
 #include "tests/support/hid_reports.h"
+#include "tests/support/wait_until.h"
 
 #include <spawn.h>
 #include <sys/wait.h>

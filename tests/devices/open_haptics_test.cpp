@@ -2,6 +2,7 @@
 
 #include "tests/support/open_haptics_stub/load.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait_until.h"
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -16,7 +17,6 @@
 #include <set>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
 
 using namespace palpa;
@@ -208,13 +208,31 @@ TEST_CASE("a device that is lost is opened again by itself", "[devices][open-hap
     omni.stub.raise_error(code);
     DeviceReading reading = omni.tick(Vec3(0.5, 0, 0));
     CHECK_FALSE(reading.valid);
-    while (!reading.valid) {
-        std::this_thread::yield();
-        reading = omni.tick(Vec3::Zero());
-    }
+    test::wait_until([&] { return (reading = omni.tick(Vec3::Zero())).valid; }, "the device");
 
     CHECK(omni.stub.devices_opened() == 2);
     CHECK(omni.stub.is_force_enabled());
+    (void)omni.tick(Vec3(0.5, 0, 0));
+    CHECK(omni.motors() == Vec3(0.5, 0, 0));
+}
+
+TEST_CASE("a scheduler that does not start is tried again, and the status says so",
+          "[devices][open-haptics]") {
+    StubbedOmni omni;
+    omni.stub.refuse_starts(3);
+    omni.stub.raise_error(hd::comm_error);
+    DeviceReading reading = omni.tick(Vec3(0.5, 0, 0));
+    CHECK_FALSE(reading.valid);
+    const auto is_back = [&] {
+        reading = omni.tick(Vec3::Zero());
+        if (omni.stub.devices_opened() == 3)
+            CHECK_THAT(std::string(omni.device().status()), Catch::Contains("does not answer"));
+        return reading.valid;
+    };
+    test::wait_until(is_back, "the device");
+
+    CHECK(omni.stub.devices_opened() == 5);
+    CHECK(omni.device().status().empty());
     (void)omni.tick(Vec3(0.5, 0, 0));
     CHECK(omni.motors() == Vec3(0.5, 0, 0));
 }

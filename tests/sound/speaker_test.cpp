@@ -2,17 +2,15 @@
 #include "sound/speaker.h"
 
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait_until.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <string>
-#include <thread>
 #include <vector>
 
 using namespace palpa;
@@ -33,15 +31,6 @@ std::vector<float> read_samples(const std::filesystem::path& path) {
     return samples;
 }
 
-// A minute is for machines that do other things as well.
-bool wait_until(const std::function<bool()>& is_so) {
-    for (int i = 0; i < 30'000; ++i) {
-        if (is_so()) return true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
-    return false;
-}
-
 bool is_sound(float sample) { return sample != 0; }
 
 }  // namespace
@@ -53,13 +42,14 @@ TEST_CASE("what is played is the tone's wave, sample by sample, and fades at the
     const Tone tone = tone_of(1);
     {
         Speaker speaker;
-        CHECK(wait_until([&] { return std::filesystem::file_size(file) > 10'000; }));
+        test::wait_until([&] { return std::filesystem::file_size(file) > 10'000; }, "silence");
         CHECK(speaker.is_there());
         const std::size_t before = std::filesystem::file_size(file);
-        CHECK(wait_until([&] {
+        const auto is_played = [&] {
             speaker.play(tone);
             return std::filesystem::file_size(file) > before + 40'000;
-        }));
+        };
+        test::wait_until(is_played, "the tone");
         CHECK(speaker.is_there());
     }
 
@@ -84,8 +74,8 @@ TEST_CASE("a tone that nobody renews for a second fades", "[sound]") {
         Speaker speaker;
         speaker.play(tone_of(3));
         // 1.2 s and what was played before the tone.
-        CHECK(
-            wait_until([&] { return std::filesystem::file_size(file) > 60'000 * sizeof(float); }));
+        test::wait_until([&] { return std::filesystem::file_size(file) > 60'000 * sizeof(float); },
+                         "what follows the tone");
     }
     unsetenv("SDL_DISKAUDIODELAY");
 
@@ -96,13 +86,14 @@ TEST_CASE("a tone that nobody renews for a second fades", "[sound]") {
     CHECK(end - begin == Approx(48'000 + 4'860).margin(600));
 }
 
-TEST_CASE("an output that goes away is told, and ends quietly", "[sound]") {
+TEST_CASE("an output that goes away is noticed, and ends quietly", "[sound]") {
     play_into("/dev/full");  // to which nothing can be written
     Speaker speaker;
-    CHECK(wait_until([&] {
+    const auto is_away = [&] {
         speaker.play(tone_of(1));
         return !speaker.is_there();
-    }));
+    };
+    test::wait_until(is_away, "the end of the output");
 }
 
 TEST_CASE("without a sound output that is said in a sentence", "[sound]") {

@@ -56,7 +56,9 @@ class Devices(unittest.TestCase):
         for layer in ("library", "symbols", "init", "limits", "calibration", "readings"):
             self.assertEqual(checks[layer]["outcome"], "ok", checks[layer])
         self.assertIn("12 N", checks["limits"]["found"])
-        self.assertEqual(examine(1, stub="absent")["init"]["found"], "no device found")
+        absent = examine(1, stub="absent")["init"]
+        self.assertEqual(absent["found"], "no device found")
+        self.assertIn("sudo cp devices/udev/70-palpa.rules ", absent["remedy"])
         self.assertIn("rest position", examine(1, stub="uncalibrated")["calibration"]["remedy"])
         missing = examine(1, PALPA_FORCE_DIMENSION="/nowhere/libdhd.so.3")["library"]
         self.assertIn("/nowhere/libdhd.so.3", missing["found"])

@@ -15,7 +15,10 @@ std::vector<std::string> list_library_files(std::string_view name,
 
 SharedLibrary::SharedLibrary(const std::string& file)
     : handle_(dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) {
-    if (!handle_) problem_ = dlerror();
+    if (handle_) return;
+    problem_ = dlerror();
+    // A library that this one needs is named alone.
+    if (!problem_.starts_with(file)) problem_ = file + ": " + problem_;
 }
 
 void* SharedLibrary::find(const char* function) const noexcept { return dlsym(handle_, function); }

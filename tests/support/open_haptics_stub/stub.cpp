@@ -31,15 +31,15 @@ public:
     Stub() : omni_(EmulatedOmniSettings{}) {
         const char* const text = std::getenv("PALPA_STUB");
         const std::string words = "," + std::string(text ? text : "") + ",";
-        const auto is_told = [&](const char* word) {
+        const auto is_said = [&](const char* word) {
             return words.find("," + std::string(word) + ",") != std::string::npos;
         };
-        runs_freely_ = is_told("free");
-        is_plugged_ = !is_told("absent");
-        if (is_told("inkwell")) calibration_ = StubCalibration::NeedsInkwell;
-        if (is_told("broken-calibration")) calibration_ = StubCalibration::Broken;
-        is_warm_ = is_told("warm");
-        is_silent_ = is_told("silent");
+        runs_freely_ = is_said("free");
+        is_plugged_ = !is_said("absent");
+        if (is_said("inkwell")) calibration_ = StubCalibration::NeedsInkwell;
+        if (is_said("broken-calibration")) calibration_ = StubCalibration::Broken;
+        is_warm_ = is_said("warm");
+        is_silent_ = is_said("silent");
     }
 
     ~Stub() override { stop(); }
@@ -68,6 +68,10 @@ public:
     void plug(bool is_plugged) override {
         const std::lock_guard lock(mutex_);
         is_plugged_ = is_plugged;
+    }
+    void refuse_starts(int starts) override {
+        const std::lock_guard lock(mutex_);
+        refused_starts_ = starts;
     }
     void raise_error(unsigned code) override {
         const std::lock_guard lock(mutex_);
@@ -115,14 +119,6 @@ public:
         const std::lock_guard lock(mutex_);
         return opened_;
     }
-    int calibrations() override {
-        const std::lock_guard lock(mutex_);
-        return calibrations_;
-    }
-    int ticks() override {
-        const std::lock_guard lock(mutex_);
-        return ticks_;
-    }
     int violations() override {
         const std::lock_guard lock(mutex_);
         return violations_;
@@ -134,10 +130,10 @@ public:
     }
 
     // The library's side.
-    hd::Handle init() {
+    hd::Handle init(const char* name) {
         const std::lock_guard lock(mutex_);
         if (is_open_) return fail(hd::already_initiated);
-        if (!is_plugged_) return fail(hd::device_fault);
+        if (!is_plugged_) return fail(name ? hd::bad_handle : hd::device_fault);
         is_open_ = true;
         ++opened_;
         return the_device;
@@ -260,7 +256,6 @@ public:
     }
     void update_calibration(hd::Code style) {
         const std::lock_guard lock(mutex_);
-        ++calibrations_;
         if (style != hd::inkwell) return raise(hd::invalid_value);
         const bool is_done = calibration_ == StubCalibration::NeedsUpdate ||
                              (calibration_ == StubCalibration::NeedsInkwell && is_in_inkwell_);
@@ -287,6 +282,10 @@ public:
     void start() {
         const std::lock_guard lock(mutex_);
         if (is_running_) return;
+        if (refused_starts_ > 0) {
+            --refused_starts_;
+            return raise(hd::timer_error);
+        }
         is_running_ = true;
         is_stopping_ = false;
         thread_ = std::thread([this] { run(); });
@@ -361,7 +360,6 @@ private:
                 if (!goes_on) callback_ = nullptr;
             }
             omni_.write(motors());
-            ++ticks_;
             granted_ = std::max(0, granted_ - 1);
             wake_.notify_all();
             if (runs_freely_)
@@ -381,8 +379,8 @@ private:
     Vec3 wanted_ = Vec3::Zero(), newton_ = Vec3::Zero();
     StubCalibration calibration_ = StubCalibration::Done;
     unsigned long rate_hz_ = 500;
-    int granted_ = 0, ticks_ = 0, frames_of_tick_ = 0, buttons_ = 0;
-    int opened_ = 0, calibrations_ = 0, violations_ = 0;
+    int granted_ = 0, frames_of_tick_ = 0, buttons_ = 0;
+    int opened_ = 0, refused_starts_ = 0, violations_ = 0;
     const char* first_violation_ = "";
     bool is_running_ = false, is_stopping_ = false, runs_freely_ = false;
     bool is_blocking_ = false, is_blocked_ = false;
@@ -414,7 +412,7 @@ PALPA_EXPORT test::OpenHapticsStub* open_haptics_stub() {
     return &stub();
 }
 
-PALPA_EXPORT hd::Handle hdInitDevice(const char*) { return stub().init(); }
+PALPA_EXPORT hd::Handle hdInitDevice(const char* name) { return stub().init(name); }
 PALPA_EXPORT void hdDisableDevice(hd::Handle handle) { stub().disable_device(handle); }
 PALPA_EXPORT hd::Handle hdGetCurrentDevice() { return stub().current(); }
 PALPA_EXPORT void hdMakeCurrentDevice(hd::Handle handle) { stub().make_current(handle); }

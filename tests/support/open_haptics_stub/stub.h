@@ -24,6 +24,8 @@ public:
     virtual void unblock() = 0;
 
     virtual void plug(bool is_plugged) = 0;
+    // So many of the next calls that start the scheduler fail.
+    virtual void refuse_starts(int starts) = 0;
     // In the next tick.
     virtual void raise_error(unsigned code) = 0;
     virtual void set_calibration(StubCalibration calibration) = 0;
@@ -40,8 +42,6 @@ public:
     virtual bool is_running() = 0;        // the scheduler
     virtual bool is_force_enabled() = 0;  // force output
     virtual int devices_opened() = 0;     // since the library was loaded
-    virtual int calibrations() = 0;       // how often it was asked to
-    virtual int ticks() = 0;              // that ended
     // Of what the documentation asks: one frame a tick, forces within one, no more than the peak,
     // numbers; the scheduler stopped by another thread. Of the first one, what.
     virtual int violations() = 0;

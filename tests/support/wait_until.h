@@ -1,4 +1,4 @@
-// For what another thread will do.
+// Waits in a test for another thread.
 #pragma once
 #include <chrono>
 #include <stdexcept>
