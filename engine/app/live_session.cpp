@@ -241,6 +241,8 @@ std::vector<std::string> LiveSession::take_recording_notes() {
     if (const std::size_t lost = trajectory_queue_.take_lost(); lost > 0)
         notes.push_back(fmt::format(
             "{} frames of the trajectory are missing: the disk was too slow to write them", lost));
+    if (!recorder_.is_recording() && !recording_problem_.empty())
+        notes.push_back(std::exchange(recording_problem_, {}));
     return notes;
 }
 
@@ -481,13 +483,10 @@ void LiveSession::record_what_happened() {
                 "will not be exact";
     }
     recorder_.note_overruns(overruns_);
-    try {
-        journal_queue_.hand_to(recorder_);
-        for (const TrajectoryShot& shot : trajectory_queue_.take()) recorder_.add(shot);
-    } catch (const LoadError& error) {  // a full disk
-        recording_problem_ = error.what();
-        recorder_.give_up();
-    }
+    journal_queue_.hand_to(recorder_);
+    for (const TrajectoryShot& shot : trajectory_queue_.take()) recorder_.add(shot);
+    if (std::string failure = recorder_.take_failure(); !failure.empty())
+        recording_problem_ = std::move(failure);
 }
 
 }  // namespace palpa

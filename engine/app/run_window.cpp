@@ -138,7 +138,7 @@ void Sandbox::frame() {
         frame_.readout.holds_something = in_hand().held.count > 0;
         tell_what_is_held();
         tell_what_was_edited();
-        if (session_.recorded_s()) tell_recording_notes();
+        tell_recording_notes();
     }
     select_anew();
     follow_lesson();

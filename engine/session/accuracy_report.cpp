@@ -12,7 +12,9 @@ namespace palpa {
 UnmetRequirements find_unmet(const AccuracyReport& report) {
     constexpr double most = 0.9, noticeable = 1.01;
     UnmetRequirements unmet;
-    if (const auto within_pN = report.within_pN; within_pN && report.within_share < most) {
+    if (report.within_pN && report.estimates == 0) {
+        unmet.tolerance = "tolerance: no error was estimated: the run is too short, or not guarded";
+    } else if (const auto within_pN = report.within_pN; within_pN && report.within_share < most) {
         unmet.tolerance = fmt::format(
             "tolerance: for 90 % of the time the error was below {:.3g} pN, {:.3g} times the limit "
             "of {:.6g} pN",

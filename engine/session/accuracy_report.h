@@ -26,9 +26,10 @@ struct AccuracyReport {
     // moves by itself, less that of all pairs in double. Each stands for the steps since the one
     // before, so that it counts for longer where error estimates are rare.
     std::uint64_t estimates = 0;
-    double median_pN = 0, ninety_pN = 0;  // median and 90 % quantile of the error
-    double within_share = 1;              // share of the time within the limit
-    double active = 0, steps = 0;         // mean active degrees of freedom, and steps per period
+    // Median and 90 % quantile of the error, and share of the time within the limit; of no meaning
+    // without estimates.
+    double median_pN = 0, ninety_pN = 0, within_share = 1;
+    double active = 0, steps = 0;  // mean active degrees of freedom, and steps per period
 
     double period_share = 0;  // median time of a step as a share of the declared period
 };

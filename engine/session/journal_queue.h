@@ -36,7 +36,7 @@ public:
     void push(std::span<const LiveTick> ticks) noexcept { ticks_->push(ticks); }
 
     // The recorder's thread: all events so far, then the ticks up to the first whose event is still
-    // under way, which stays for the next call. Throws LoadError where the recorder does.
+    // under way, which stays for the next call.
     void hand_to(SessionRecorder& recorder);
 
     // Number of lost ticks, when the ring was full.

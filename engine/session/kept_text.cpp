@@ -30,7 +30,19 @@ bool KeptText::hand_to(const std::function<void(std::string_view)>& take) {
         return true;
     }
     std::FILE* const file = file_.get();
-    if (std::fflush(file) != 0 || std::fseek(file, 0, SEEK_SET) != 0) return false;
+    if (std::fflush(file) != 0) {
+        forget();
+        return false;
+    }
+    // Whatever happens, what is added later follows all that is there.
+    struct AtEnd {
+        ~AtEnd() {
+            if (std::fseek(kept.file_.get(), 0, SEEK_END) != 0) kept.forget();
+        }
+        KeptText& kept;
+    };
+    const AtEnd at_end{*this};
+    if (std::fseek(file, 0, SEEK_SET) != 0) return false;
     std::array<char, 1 << 16> piece;
     std::size_t left = size_;
     while (left > 0) {
@@ -39,7 +51,7 @@ bool KeptText::hand_to(const std::function<void(std::string_view)>& take) {
         take({piece.data(), got});
         left -= got;
     }
-    return left == 0 && std::fseek(file, 0, SEEK_END) == 0;
+    return left == 0;
 }
 
 void KeptText::forget() noexcept {

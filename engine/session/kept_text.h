@@ -21,7 +21,7 @@ public:
 
     bool is_whole() const noexcept { return is_whole_; }
     // All of it in its order, piece by piece; false where it could not be read back. What `take`
-    // throws goes on to the caller.
+    // throws goes on to the caller, and nothing is lost by it.
     [[nodiscard]] bool hand_to(const std::function<void(std::string_view)>& take);
 
 private:

@@ -55,8 +55,20 @@ const std::string& SessionRecorder::keep(const std::filesystem::path& path,
     std::size_t bytes = 0;
     for (const KeptFile& file : files_) bytes += file.content.size();
     kept_.set_beside(bytes);
-    if (recording_) recording_->add_input(files_.back().name, content);
+    write_to_recording(
+        [&](Recording& recording) { recording.add_input(files_.back().name, content); });
     return files_.back().name;
+}
+
+template <class Write>
+void SessionRecorder::write_to_recording(const Write& write) {
+    if (!recording_) return;
+    try {
+        write(*recording_);
+    } catch (const LoadError& error) {
+        failure_ = error.what();
+        recording_.reset();
+    }
 }
 
 void SessionRecorder::add(std::span<const LiveTick> ticks) {
@@ -75,13 +87,13 @@ void SessionRecorder::add(std::span<const LiveTick> ticks) {
             rows.push_back(ticks[i].tick);
             statistics_[i].add(ticks[i].tick);
         }
-        recording_->add(rows);
+        write_to_recording([&](Recording& recording) { recording.add(rows); });
     }
     if (writer_.size() > journal_flush_bytes) flush();
 }
 
 void SessionRecorder::add(const TrajectoryShot& shot) {
-    if (recording_) recording_->add_frame(shot);
+    write_to_recording([&](Recording& recording) { recording.add_frame(shot); });
 }
 
 std::vector<std::string> SessionRecorder::take_notes() {
@@ -96,33 +108,38 @@ void SessionRecorder::begin(const std::filesystem::path& folder, bool overwrites
     flush();
     if (!is_whole_ || !kept_.is_whole()) {
         throw LoadError({folder.string()},
-                        "cannot be recorded: the session is too long, so its beginning is no "
-                        "longer in memory; open the scene again and record from the start");
+                        "cannot be recorded: the session is too long, or the disk was full, so "
+                        "not all of it is kept; open the scene again and record from the start");
     }
     recording_.emplace(folder, scene_, overwrites, devices_.size(), RecordedBy::Journal);
     try {
-        for (const KeptFile& file : files_) recording_->add_input(file.name, file.content);
+        write_beginning(folder, trajectory);
     } catch (const LoadError&) {
         recording_.reset();
         throw;
     }
+    statistics_.assign(devices_.size(), Statistics(servo_tick_s));
+}
+
+// The whole session so far, and the mark where this recording begins, which is its alone.
+void SessionRecorder::write_beginning(const std::filesystem::path& folder,
+                                      const std::optional<TrajectorySettings>& trajectory) {
+    for (const KeptFile& file : files_) recording_->add_input(file.name, file.content);
     if (trajectory) recording_->begin_trajectory(*trajectory);
     if (!kept_.hand_to(
             [&](std::string_view text) { recording_->add_journal(std::string(text)); })) {
-        recording_.reset();
         throw LoadError({folder.string()},
                         "cannot be recorded: the session's beginning, in a temporary file, could "
                         "not be read back");
     }
-    statistics_.assign(devices_.size(), Statistics(servo_tick_s));
     writer_.begin_recording();
-    // It is this recording's alone.
     recording_->add_journal(writer_.take());
 }
 
 void SessionRecorder::end() {
     if (!recording_) return;
     flush();
+    if (!recording_) throw LoadError({"recording"}, take_failure());
     Summary summary = statistics_.front().summary();
     summary.device = devices_.front().spec.name;
     for (std::size_t i = 1; i < statistics_.size(); ++i) {
@@ -150,8 +167,8 @@ double SessionRecorder::recorded_s() const noexcept {
 
 void SessionRecorder::flush() {
     const std::string text = writer_.take();
-    if (recording_) recording_->add_journal(text);
     if (is_whole_) kept_.add(text);
+    write_to_recording([&](Recording& recording) { recording.add_journal(text); });
 }
 
 }  // namespace palpa

@@ -15,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpa {
@@ -27,8 +28,12 @@ public:
 
     SessionRecorder(const SceneDescription& scene, std::span<const HandDevice> devices);
 
+    // What happened next. A recording that cannot be written any more, as on a full disk, ends; the
+    // session is still kept.
     void add(const PlayedEvent& event);
     void add(std::span<const LiveTick> ticks);  // one tick of all hands
+    // Why a recording has ended by itself since the last call; empty if none has.
+    std::string take_failure() { return std::exchange(failure_, {}); }
     // Marks that part of the session is missing: no recording of it can be played again.
     void lose() noexcept { is_whole_ = false; }
 
@@ -36,14 +41,12 @@ public:
     // Recording would, or if the beginning of the session is no longer in memory.
     void begin(const std::filesystem::path& folder, bool overwrites,
                const std::optional<TrajectorySettings>& trajectory = {});
-    // Adds a frame of the trajectory; does nothing without a recording.
+    // Adds a frame of the trajectory; does nothing without a recording, or without a trajectory.
     void add(const TrajectoryShot& shot);
     // Notes for the user since the last call, one sentence each.
     std::vector<std::string> take_notes();
-    // Stops recording without a summary.
-    void give_up() noexcept { recording_.reset(); }
-    // Ends the recording with its summary; does nothing without one. Throws LoadError if it cannot
-    // be written.
+    // Ends the recording with its summary; does nothing without one. Throws LoadError if that
+    // cannot be written.
     void end();
 
     // A row a second of how the session fares from now on, whether it is recorded or not. Throws
@@ -64,6 +67,11 @@ private:
 
     const std::string& keep(const std::filesystem::path& path, const std::string& content);
     void flush();
+    void write_beginning(const std::filesystem::path& folder,
+                         const std::optional<TrajectorySettings>& trajectory);
+    // Calls `write` with the recording, if there is one, and ends it where that throws LoadError.
+    template <class Write>
+    void write_to_recording(const Write& write);
 
     SceneDescription scene_;
     InputNames names_;
@@ -73,6 +81,7 @@ private:
     KeptText kept_{most_kept};
     bool is_whole_ = true;  // but for what kept_ could not keep
     std::optional<Recording> recording_;
+    std::string failure_;
     std::vector<std::string> notes_;      // of recordings that are over
     std::vector<Statistics> statistics_;  // of what is recorded, of each hand
     std::optional<StatisticsFile> statistics_file_;

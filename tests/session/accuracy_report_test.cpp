@@ -114,6 +114,16 @@ TEST_CASE("what an error estimate finds stands for the steps before it", "[sessi
     CHECK_FALSE(find_unmet(report).tolerance.empty());
 }
 
+TEST_CASE("a tolerance of which no error was estimated does not count as met",
+          "[session][accuracy]") {
+    AccuracyLog log = log_of({}, 50.0);
+    for (int i = 0; i < 20; ++i) log.add_step(step_of(8, {}));
+
+    const AccuracyReport report = log.report(0).value_or(AccuracyReport{});
+    CHECK(report.estimates == 0);
+    CHECK_THAT(find_unmet(report).tolerance, Contains("no error was estimated"));
+}
+
 TEST_CASE("no requirement is unmet where everything holds", "[session][accuracy]") {
     AccuracyLog log = log_of(std::array{20.0, 3000.0}, 50.0);
     log.add(tick_that_felt(33, 1));

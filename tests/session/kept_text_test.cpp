@@ -1,7 +1,9 @@
 #include "session/kept_text.h"
 
 #include <catch2/catch.hpp>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 
 using namespace palpa;
 
@@ -27,6 +29,21 @@ TEST_CASE("kept text comes back whole, and goes on after that", "[session][kept_
     CHECK(all_of(kept) == expected);
     kept.add("end\n");
     CHECK(all_of(kept) == expected + "end\n");
+}
+
+TEST_CASE("kept text stays whole where whoever takes it throws on the way",
+          "[session][kept_text]") {
+    KeptText kept(std::size_t{1} << 20);
+    const std::string before(300'000, 'x');  // more than one piece
+    kept.add(before);
+    int pieces = 0;
+    const auto full = [&](std::string_view) {
+        if (++pieces == 2) throw std::runtime_error("no space");
+    };
+    CHECK_THROWS_WITH((void)kept.hand_to(full), "no space");
+
+    kept.add("end\n");
+    CHECK(all_of(kept) == before + "end\n");
 }
 
 TEST_CASE("of more than the limit nothing is kept", "[session][kept_text]") {
