@@ -1,7 +1,7 @@
 // The window and its graphics, in which the start screen and scenes are shown one after the other.
 #pragma once
-#include "app/worker.h"
 #include "core/stage.h"
+#include "core/worker.h"
 #include "gpu/device.h"
 #include "gpu/swapchain.h"
 #include "render/renderer.h"
@@ -102,7 +102,9 @@ private:
     void keep_validation_messages();
 
     ShellOptions options_;
-    Worker worker_;      // created before this thread lowers its priority
+    // Created before this thread lowers its priority, so that it and the threads that it starts
+    // (servos, simulations) have the normal one.
+    Worker worker_;
     double text_scale_;  // relative to the display's
     Window window_;
     std::unique_ptr<Graphics> graphics_;

@@ -1,6 +1,6 @@
-// A worker thread for long tasks beside the window. It is created before the window's thread lowers
-// its priority, so that it and the threads that it starts (servos, simulations) have the normal
-// priority.
+// A thread for long tasks, one after the other. Tasks that use much memory stay on one thread: the
+// C library keeps what a thread frees for its next allocations, and a new thread may get memory
+// anew.
 #pragma once
 #include <condition_variable>
 #include <functional>

@@ -10,7 +10,8 @@ namespace palpa {
 void RenewalWorker::start_if_pending(const TorsionModel& model, const SecondOrderSettings& settings,
                                      SecondOrderStatics& statics) {
     if (is_busy() || !statics.pending || statics.pending->made) return;
-    making_ = std::async(std::launch::async, [&model, &settings, &statics] {
+    if (!worker_) worker_.emplace();
+    making_ = worker_->start([&model, &settings, &statics] {
         lower_priority();
         try {
             make_pending(model, settings, statics);

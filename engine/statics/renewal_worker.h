@@ -1,9 +1,11 @@
 // A thread of low priority that makes the pending renewals of one SecondOrderStatics, one at a
 // time.
 #pragma once
+#include "core/worker.h"
 #include "statics/second_order_step.h"
 
 #include <future>
+#include <optional>
 
 namespace palpa {
 
@@ -24,6 +26,7 @@ public:
 private:
     bool is_busy();
 
+    std::optional<Worker> worker_;  // from the first renewal on
     std::future<void> making_;
 };
 
