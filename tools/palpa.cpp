@@ -16,6 +16,8 @@
 #include <cstddef>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <iostream>
 #include <new>
 #include <optional>
 #include <string>
@@ -101,8 +103,11 @@ int main(int argc, char** argv) {
         palpa::move_structure_first(palpa::expand_help({argv + 1, argv + argc}));
     try {
         const int code = run_program(arguments);
-        if (std::fflush(stdout) == 0) return code;
+        if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return code;
         fmt::print(stderr, "palpa: the output cannot be written\n");
+        return bad_input;
+    } catch (const std::filesystem::filesystem_error& error) {
+        fmt::print(stderr, "palpa: {}\n", error.what());
         return bad_input;
     } catch (const std::system_error&) {  // what fmt throws when it cannot print
         fmt::print(stderr, "palpa: the output cannot be written\n");

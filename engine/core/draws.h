@@ -1,5 +1,5 @@
 // Random numbers from a seed, identical on every machine (the standard library's distributions are
-// not).
+// not). Make one draw per statement: C++ does not fix the order within an expression.
 #pragma once
 #include <cmath>
 #include <cstddef>

@@ -35,7 +35,8 @@ std::string list_file_versions() {
 }
 
 std::optional<std::string> check_version(std::string_view kind, FileVersion stated,
-                                         FileVersion ours, const TextPlace& place) {
+                                         FileVersion ours, const TextPlace& place,
+                                         std::string_view of_unknown) {
     const FileVersion last_of_major{ours.major + 1, 0};
     if (stated < unnumbered_version) {
         throw LoadError(place, fmt::format("{0} format {1} does not exist; expected {0} format 1 "
@@ -49,10 +50,8 @@ std::optional<std::string> check_version(std::string_view kind, FileVersion stat
                                            kind, to_string(stated), to_string(ours)));
     }
     if (stated <= ours) return std::nullopt;
-    return fmt::format(
-        "{} format {} is newer than {}, which this program writes: what it does not "
-        "know is left out",
-        kind, to_string(stated), to_string(ours));
+    return fmt::format("{} format {} is newer than {}, which this program writes: {}", kind,
+                       to_string(stated), to_string(ours), of_unknown);
 }
 
 }  // namespace palpa

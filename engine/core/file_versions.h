@@ -32,8 +32,10 @@ std::optional<FileVersion> find_version(std::string_view text);
 std::string list_file_versions();
 
 // Throws LoadError for a version that cannot be read: one of a newer major number, and 0.
-// Returns a note for one of a newer minor number, else nothing. `kind`: "scene", "journal".
-std::optional<std::string> check_version(std::string_view kind, FileVersion stated,
-                                         FileVersion ours, const TextPlace& place);
+// Returns a note for one of a newer minor number, which ends with `of_unknown`, else nothing.
+// `kind`: "scene", "journal".
+std::optional<std::string> check_version(
+    std::string_view kind, FileVersion stated, FileVersion ours, const TextPlace& place,
+    std::string_view of_unknown = "what it does not know is left out");
 
 }  // namespace palpa

@@ -164,8 +164,10 @@ void write_text_file(const fs::path& path, std::string_view text, Existing exist
 }
 
 void write_text_files(std::span<const TextFile> files) {
-    std::deque<Draft> drafts;  // which cannot be moved
+    std::deque<std::optional<Draft>> drafts;  // none for a stream, which is written last
     for (const TextFile& file : files) {
+        std::optional<Draft>& draft = drafts.emplace_back();
+        if (is_stream(file.path)) continue;
         const fs::file_status status = status_of(file.path);
         if (fs::is_directory(status)) {
             throw LoadError({file.path.string()}, "is a folder; expected a file, or nothing");
@@ -173,9 +175,14 @@ void write_text_files(std::span<const TextFile> files) {
         if (fs::exists(status) && file.existing == Existing::Refuse) {
             throw LoadError({file.path.string()}, is_there);
         }
-        drafts.emplace_back(file.path).write(file.text);
+        draft.emplace(file.path).write(file.text);
     }
-    for (std::size_t i = 0; i < files.size(); ++i) drafts[i].move(files[i].existing);
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        if (drafts[i]) drafts[i]->move(files[i].existing);
+    }
+    for (const TextFile& file : files) {
+        if (is_stream(file.path)) write_into(file.path, file.text);
+    }
 }
 
 bool has_mark(const fs::path& path, std::string_view mark) {
@@ -228,7 +235,7 @@ std::vector<fs::path> list_folder(const fs::path& folder, std::size_t most) {
 
 NewFile::NewFile(fs::path path) : path_(std::move(path)) {
     std::error_code error;
-    file_ = File(path_, FileUse::Create, error);
+    file_ = File(path_, is_stream(path_) ? FileUse::Write : FileUse::Create, error);
     if (error == std::errc::file_exists) throw LoadError({path_.string()}, is_there);
     if (error) refuse_write(path_, error);
 }

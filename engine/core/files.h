@@ -29,7 +29,7 @@ enum class Existing : std::uint8_t { Refuse, Replace };
 void write_text_file(const std::filesystem::path& path, std::string_view text,
                      Existing existing = Existing::Refuse);
 
-// Several files, written together or not at all.
+// Several files, written together or not at all; devices and pipes are written last.
 struct TextFile {
     std::filesystem::path path;
     std::string text;
@@ -39,7 +39,7 @@ void write_text_files(std::span<const TextFile> files);
 
 // Call before long work: throws LoadError if the result cannot be written to `path`. An existing
 // file may be replaced only if `overwrites` is set and `mark`, which identifies the program's own
-// files, stands near its beginning. Returns how to write.
+// files, stands near its beginning. Returns how to write. A device or a pipe is never replaced.
 Existing check_output(const std::filesystem::path& path, std::string_view mark, bool overwrites);
 
 // Whether `mark` is in the first 4 KiB of a regular file (not a link), or the file begins with
@@ -52,7 +52,8 @@ std::vector<std::filesystem::path> list_folder(
     const std::filesystem::path& folder,
     std::size_t most = std::numeric_limits<std::size_t>::max());
 
-// A new file that is written piece by piece. All functions throw LoadError.
+// A new file that is written piece by piece; a device or a pipe is written directly. All functions
+// throw LoadError.
 class NewFile {
 public:
     explicit NewFile(std::filesystem::path path);

@@ -15,8 +15,8 @@ char upper(char letter) noexcept {
     return letter >= 'a' && letter <= 'z' ? static_cast<char>(letter - 'a' + 'A') : letter;
 }
 
-// How many bytes of UTF-8 the first letter has; 0 if it is a control character or none at all (RFC
-// 3629, section 4).
+// How many bytes of UTF-8 the first letter has; 0 if it is a control character, turns the direction
+// of the text, or is none at all (RFC 3629, section 4).
 std::size_t letter_size(std::string_view text) noexcept {
     const auto byte = [&](std::size_t i) {
         return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
@@ -30,7 +30,11 @@ std::size_t letter_size(std::string_view text) noexcept {
     if (!follows(2)) return 0;
     const bool overlong = first == 0xe0 && second < 0xa0;
     const bool surrogate = first == 0xed && second >= 0xa0;
-    if (first >= 0xe0 && first < 0xf0) return overlong || surrogate ? 0 : 3;
+    // Marks that turn the direction of what follows: U+202A to U+202E, U+2066 to U+2069.
+    const unsigned third = byte(2);
+    const bool turns = first == 0xe2 && ((second == 0x80 && third >= 0xaa && third <= 0xae) ||
+                                         (second == 0x81 && third >= 0xa6 && third <= 0xa9));
+    if (first >= 0xe0 && first < 0xf0) return overlong || surrogate || turns ? 0 : 3;
     if (!follows(3)) return 0;
     const unsigned head = first << 8U | second;
     return head >= 0xf090 && head < 0xf490 ? 4 : 0;

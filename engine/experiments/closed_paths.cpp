@@ -29,9 +29,11 @@ std::vector<std::string> draw_closed_path(Draws& draws, bool turn, bool& in_plan
     const Vec3 box_mm(60, 45, 25);
     std::vector<std::string> settings = draw_hand(draws);
     in_plane = draws.below(2) == 0;
-    settings.push_back(fmt::format("hand.start_offset_angstrom=[{:.4f}, {:.4f}, {:.4f}]",
-                                   draws.between(-0.1, 2.5), draws.between(-0.5, 0.5),
-                                   in_plane ? 0 : draws.between(-0.5, 0.5)));
+    const double off_z = in_plane ? 0 : draws.between(-0.5, 0.5);
+    const double off_y = draws.between(-0.5, 0.5);
+    const double off_x = draws.between(-0.1, 2.5);
+    settings.push_back(
+        fmt::format("hand.start_offset_angstrom=[{:.4f}, {:.4f}, {:.4f}]", off_x, off_y, off_z));
     const double mm_per_s = draws.scale(15, 150);
     const auto draw_within = [&](const Vec3& most) {
         Vec3 place;

@@ -36,7 +36,8 @@ FaultPeriod draw_fault(Draws& draws, double end_s) {
     fault.fault = kinds[draws.below(kinds.size())];
     fault.begin = static_cast<int>(servo_rate_hz * draws.between(lead_s, end_s));
     fault.end = fault.begin + static_cast<int>(std::lround(draws.scale(1, 500)));
-    fault.size_m = (draws.below(2) == 0 ? 1 : -1) * draws.scale(0.5e-3, 50e-3);
+    const double sign = draws.below(2) == 0 ? 1 : -1;
+    fault.size_m = sign * draws.scale(0.5e-3, 50e-3);
     return fault;
 }
 

@@ -25,8 +25,8 @@ Disturbances draw_disturbances(Draws& draws, double end_s);
 // simulation passes until they are felt.
 bool is_disturbed(const Disturbances& disturbances, double time_s, double period_s) noexcept;
 
-// Stands before a device that works, behind a faulty one: where the handle truly was, and what was
-// truly written.
+// Between a device without faults and the one that adds them: records where the handle truly was,
+// and which force truly reached it.
 class WatchedDevice final : public Device {
 public:
     explicit WatchedDevice(Device& device) : device_(device) {}

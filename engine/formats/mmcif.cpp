@@ -108,7 +108,7 @@ public:
     Structure build(const char* end, std::size_t last_line) {
         if (table_ == single_row) add_atom();
         if (last_.text.data() + last_.text.size() == end) {
-            builder_.add_note("ends with its last atom: the file may have been cut off");
+            builder_.add_doubt("ends with its last atom: the file may have been cut off");
         }
         if (builder_.atom_count() == 0 && dictionary_line_ != 0) {
             fail({{}, dictionary_line_, 0},

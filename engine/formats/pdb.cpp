@@ -117,9 +117,9 @@ public:
             fail_line(
                 fmt::format("ends within the model of line {}; expected ENDMDL", model_line_));
         }
-        if (end_line_ == 0) builder_.add_note("no END record: the file may be cut off");
+        if (end_line_ == 0) builder_.add_doubt("no END record: the file may be cut off");
         if (!unknown_.empty()) {
-            builder_.add_note(
+            builder_.add_doubt(
                 fmt::format("records left out as unknown: {}", fmt::join(unknown_, ", ")));
         }
         Structure structure = builder_.build(lines_.number());

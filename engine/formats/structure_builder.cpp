@@ -114,8 +114,8 @@ void StructureBuilder::leave_out(const AtomName& name, const AtomRecord& record,
                                     describe(name, record), first_line));
     }
     if (++repeated_ == 1) {
-        structure_.repeated = fmt::format("atom {} of line {} is repeated on line {}",
-                                          describe(name, record), first_line, line);
+        first_repeated_ = fmt::format("atom {} of line {} is repeated on line {}",
+                                      describe(name, record), first_line, line);
     }
 }
 
@@ -140,16 +140,19 @@ void StructureBuilder::end_chain() {
     }
 }
 
-void StructureBuilder::add_note(std::string note) { structure_.notes.push_back(std::move(note)); }
+void StructureBuilder::add_doubt(std::string note) {
+    structure_.notes.push_back(note);
+    structure_.doubts.push_back(std::move(note));
+}
 
 Structure StructureBuilder::build(std::size_t line) {
     if (atom_count() == 0) throw LoadError({structure_.file, line}, "ends without any atom");
     if (repeated_ > 0) {
-        structure_.repeated +=
+        first_repeated_ +=
             repeated_ == 1 ? "; the first is used"
                            : fmt::format(", and {} more repeated atoms; the first of each is used",
                                          repeated_ - 1);
-        structure_.notes.push_back(structure_.repeated);
+        add_doubt(std::move(first_repeated_));
     }
     add_notes(structure_);
     return std::move(structure_);

@@ -17,8 +17,9 @@ public:
 
     // Guesses the element where the record has none. An atom that comes again (the same model,
     // chain, segment, residue, number and insertion code, name, alternate location) is left out,
-    // which `Structure::repeated` lists. Refused are more than `most_repeated` of these, for which
-    // MODEL, TER or chains may have been lost; one of another residue; an element that is none.
+    // of which `Structure::doubts` has one. Refused are more than `most_repeated` of these, for
+    // which MODEL, TER or chains may have been lost; one of another residue; an element that is
+    // none.
     void add_atom(AtomName name, const Vec3& position, AtomRecord record, std::size_t line);
 
     static constexpr std::size_t most_repeated = 50;
@@ -32,7 +33,8 @@ public:
     // Ends a chain after the atoms so far.
     void end_chain();
 
-    void add_note(std::string note);
+    // A note on what may be wrong with the file.
+    void add_doubt(std::string note);
 
     std::size_t atom_count() const noexcept { return structure_.names.size(); }
 
@@ -47,6 +49,7 @@ private:
     Structure structure_;
     std::unordered_map<std::string, std::size_t> atoms_;  // indices of the atoms
     std::size_t repeated_ = 0;
+    std::string first_repeated_;  // as a sentence
 };
 
 }  // namespace palpa

@@ -97,8 +97,8 @@ struct Structure {
     std::vector<std::string> notes{};       // notes for the user, one sentence each
     // Full names of residues in the file: "TES" is "TESTOSTERONE".
     std::map<std::string, std::string> component_names{};
-    // Repeated atoms that were left out, as a sentence; empty if there were none.
-    std::string repeated{};
+    // Those of the notes that say what may be wrong with the file.
+    std::vector<std::string> doubts{};
     std::vector<StructureLink> links{};         // without links to symmetry copies
     std::vector<SymmetryOperator> operators{};  // operators of the assemblies
     std::vector<Assembly> assemblies{};

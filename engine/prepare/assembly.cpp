@@ -147,7 +147,7 @@ public:
           copies_(residues_.size()) {
         result_.file = structure.file;
         result_.notes = structure.notes;
-        result_.repeated = structure.repeated;
+        result_.doubts = structure.doubts;
         result_.component_names = structure.component_names;
         result_.links = structure.links;
     }

@@ -281,7 +281,7 @@ PreparedSystem prepare_system(const ForceField& given_force_field, const Structu
     PreparedSystem result;
     Report& report = result.report;
     tell(progress, for_translation("choosing and naming atoms"));
-    if (!structure.repeated.empty()) report.warn(structure.repeated);
+    for (const std::string& doubt : structure.doubts) report.warn(doubt);
     Structure chosen = choose_atoms(structure, settings, report);
     check_size(chosen);
     ApproximatedUnknown approximated;
@@ -395,6 +395,15 @@ void write_prepared(const PreparedSystem& system, const std::filesystem::path& f
     for (TextFile& file : files) file.existing = existing;
     create_folder(folder);
     write_text_files(files);
+    if (existing == Existing::Refuse) return;
+    for (const char* const name : prepared_names) {
+        const std::filesystem::path path = folder / name;
+        const bool is_new =
+            std::ranges::any_of(files, [&](const TextFile& file) { return file.path == path; });
+        std::error_code error;
+        if (!is_new && has_mark(path, prepared_mark)) std::filesystem::remove(path, error);
+        if (error) throw LoadError({path.string()}, "cannot be removed: " + error.message());
+    }
 }
 
 }  // namespace palpa

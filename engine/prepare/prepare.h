@@ -12,6 +12,7 @@
 #include "prepare/residue_names.h"
 #include "prepare/settings.h"
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -71,10 +72,14 @@ PreparedSystem prepare_system(const ForceField& force_field, const Structure& st
 
 // system.psf, system.pdb, system.crd, system.prm, report.txt, approximate.str where something is,
 // and those of `scene`, named without folder: all of them or none. `title`: what the files say of
-// themselves; it ends with prepared_mark, by which they are known again.
+// themselves; it ends with prepared_mark, by which they are known again. Where they replace those
+// of an earlier preparation, the others of prepared_names that it left are removed.
 void write_prepared(const PreparedSystem& system, const std::filesystem::path& folder,
                     std::string_view title, std::span<const TextFile> scene,
                     Existing existing = Existing::Refuse);
 inline constexpr std::string_view prepared_mark = "by palpa prepare";
+inline constexpr std::array prepared_names{"system.psf", "system.pdb",  "system.crd",
+                                           "system.prm", "report.txt",  "approximate.str",
+                                           "scene.toml", "relaxed.crd", "scene.psf"};
 
 }  // namespace palpa

@@ -60,7 +60,7 @@ Structure keep_atoms(const Structure& structure, const std::vector<bool>& kept) 
     Structure result;
     result.file = structure.file;
     result.notes = structure.notes;
-    result.repeated = structure.repeated;
+    result.doubts = structure.doubts;
     result.component_names = structure.component_names;
     result.links = structure.links;
     result.operators = structure.operators;

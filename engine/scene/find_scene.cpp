@@ -128,7 +128,18 @@ std::string describe_contents(const fs::path& folder) {
     return scenes.empty() ? std::string() : fmt::format("; scenes near it: {}", join_some(scenes));
 }
 
-std::optional<fs::path> find_own_scene(const std::string& name) {
+// The name of one of Palpa's own scenes, for one written as a path in the source tree.
+std::string own_scene_name(const fs::path& named) {
+    std::string name = named.lexically_normal().generic_string();
+    if (name.starts_with("scenes/")) name.erase(0, 7);
+    if (name.ends_with(".toml")) name.resize(name.size() - 5);
+    if (name.ends_with("/scene")) name.resize(name.size() - 6);
+    while (name.ends_with('/')) name.pop_back();
+    return name;
+}
+
+std::optional<fs::path> find_own_scene(const fs::path& named) {
+    const std::string name = own_scene_name(named);
     for (const fs::path& folder : own_scene_folders()) {
         for (const SceneEntry& scene : list_scenes(folder)) {
             if (scene.name == name) return scene.file;
@@ -137,7 +148,7 @@ std::optional<fs::path> find_own_scene(const std::string& name) {
     return std::nullopt;
 }
 
-std::string describe_own_scenes(const std::string& named) {
+std::string describe_own_scenes(const fs::path& named) {
     std::vector<std::string> names;
     for (const fs::path& folder : own_scene_folders()) {
         for (const SceneEntry& scene : list_scenes(folder)) names.push_back(scene.name);
@@ -147,9 +158,7 @@ std::string describe_own_scenes(const std::string& named) {
     std::ranges::stable_partition(
         names, [](const std::string& name) { return name.find('/') == std::string::npos; });
     const std::vector<std::string_view> views(names.begin(), names.end());
-    std::string wanted = named.starts_with("scenes/") ? named.substr(7) : named;
-    if (wanted.ends_with(".toml")) wanted.resize(wanted.size() - 5);
-    while (wanted.ends_with('/')) wanted.pop_back();
+    const std::string wanted = own_scene_name(named);
     std::vector<std::string> of_it;
     std::ranges::copy_if(names, std::back_inserter(of_it),
                          [&](const std::string& name) { return name.starts_with(wanted + "/"); });
@@ -219,8 +228,10 @@ fs::path find_scene_file(const fs::path& named) {
     if (fs::is_directory(named, error)) {
         const fs::path file = named / usual_name;
         if (fs::exists(file, error)) return file;
+        if (error && error != std::errc::no_such_file_or_directory)
+            throw LoadError({file.string()}, "cannot be read: " + error.message());
         std::string contents = describe_contents(named);
-        const std::optional<fs::path> own = find_own_scene(named.string());
+        const std::optional<fs::path> own = find_own_scene(named);
         if (own) {
             contents += fmt::format("; Palpa's own scene of that name: {}", own->string());
         } else if (contents.empty()) {
@@ -233,11 +244,11 @@ fs::path find_scene_file(const fs::path& named) {
         refuse_other_files(named);
         return named;
     }
-    if (auto own = find_own_scene(named.lexically_normal().string())) return *own;
+    if (auto own = find_own_scene(named)) return *own;
     throw LoadError({named.string()},
                     "no such scene; expected a scene folder, a .toml file or the "
                     "name of a scene" +
-                        describe_own_scenes(named.string()));
+                        describe_own_scenes(named));
 }
 
 }  // namespace palpa

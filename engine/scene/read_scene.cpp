@@ -50,12 +50,19 @@ std::string quote_word(std::string_view text) {
 }
 
 // What a node holds, as a person would call it.
+std::string setting_of(const toml::node& node);
+
 std::string kind_of(const toml::node& node) {
     switch (node.type()) {
         case toml::node_type::table:
             return "a table";
-        case toml::node_type::array:
-            return "a list";
+        case toml::node_type::array: {
+            const toml::array& list = *node.as_array();
+            const bool is_short =
+                list.size() <= 4 &&
+                std::ranges::all_of(list, [](const auto& each) { return each.is_number(); });
+            return is_short && !list.empty() ? "the list " + setting_of(node) : "a list";
+        }
         case toml::node_type::string:
             return "the text " + quote_word(node.ref<std::string>());
         case toml::node_type::integer:
@@ -134,7 +141,8 @@ struct ReadingRules {
 };
 
 ReadingRules rules_of(FileVersion version) {
-    return {false, version.major<scene_version.major, version> scene_version};
+    const bool is_older = version.major < scene_version.major;
+    return {false, is_older, version > scene_version};
 }
 
 // Fills a description from a table.
@@ -150,7 +158,7 @@ public:
           folder_(std::move(folder)),
           rules_(rules),
           problems_(problems),
-          is_made_(root.contains("made_by")) {
+          is_made_(!root["made_by"].value_or(std::string()).empty()) {
         if (!rules.allows_outside) {
             may_read_ = {real_path(folder_.empty() ? "." : folder_)};
             for (const fs::path& own : own_scene_folders()) {
@@ -160,7 +168,7 @@ public:
         levels_.push_back({&root, "", place_or_start(root), {}, false});
     }
 
-    // Whether there were problems, the problems tell.
+    // Notes keys that are unknown. `problems` holds what was found wrong.
     void finish() { report_unknown_keys(levels_.back()); }
 
     void enter_table(const Field& field) override {
@@ -565,7 +573,8 @@ private:
     }
 
     bool read_file_name(const Field& field, const toml::node& node, fs::path& value) {
-        if (!node.is_string() || node.ref<std::string>().empty()) {
+        if (!node.is_string() || node.ref<std::string>().empty() ||
+            node.ref<std::string>().find('\0') != std::string::npos) {
             problem(node, expected(field, node, "a file name in quotes"));
             return false;
         }
@@ -581,8 +590,15 @@ private:
             return false;
         }
         std::error_code error;
-        if (fs::is_regular_file(value, error)) return true;
+        const fs::file_type type = fs::status(value, error).type();
+        if (type == fs::file_type::regular) return true;
         if (!missing_.insert(value).second) return false;  // was named already
+        if (type != fs::file_type::not_found) {
+            problem(node, fmt::format("'{}' names {}: {}; expected a file in the scene's folder",
+                                      full_key(field.key), value.generic_string(),
+                                      error ? error.message() : "this is not a regular file"));
+            return false;
+        }
         problem(node, fmt::format("'{}' names a file that does not exist: {}; expected a file in "
                                   "the scene's folder{}",
                                   full_key(field.key), value.generic_string(),

@@ -180,7 +180,8 @@ private:
                                            : std::nullopt;
         if (!version)
             fail("is not a journal", fmt::format("{}{}", journal_mark, to_string(journal_version)));
-        if (const auto note = check_version("journal", *version, journal_version, place_))
+        if (const auto note = check_version("journal", *version, journal_version, place_,
+                                            "a line that it does not know ends the reading"))
             journal_.notes.push_back(fmt::format("{}: {}", to_string(place_), *note));
         journal_.version = *version;
     }

@@ -304,10 +304,15 @@ FileVersion read_recording_version(const fs::path& folder) {
     const fs::path session = folder / "session.toml";
     if (!is_there(session)) return unnumbered_version;
     const std::string text = read_text_file(session);
+    std::size_t number = 0;
     for (const std::string_view line : split_lines(text)) {
+        ++number;
         if (!line.starts_with(version_mark)) continue;
-        if (const auto version = find_version(trimmed(line.substr(version_mark.size()))))
-            return *version;
+        const std::string_view stated = trimmed(line.substr(version_mark.size()));
+        if (const auto version = find_version(stated)) return *version;
+        throw LoadError({session.string(), number},
+                        fmt::format("'{}' is not the number of a recording's format; expected {}",
+                                    printable(stated.substr(0, 40)), to_string(recording_version)));
     }
     return unnumbered_version;
 }
@@ -415,9 +420,10 @@ nlohmann::ordered_json accuracy_as_json(const AccuracyReport& report) {
         json["within_pN"] = *report.within_pN;
         json["error_estimates"] = report.estimates;
         json["audits"] = report.estimates;
-        json["error_median_pN"] = report.median_pN;
-        json["error_90_pN"] = report.ninety_pN;
-        json["within_share"] = report.within_share;
+        for (const auto& [key, value] : {std::pair{"error_median_pN", report.median_pN},
+                                         {"error_90_pN", report.ninety_pN},
+                                         {"within_share", report.within_share}})
+            json[key] = report.estimates > 0 ? nlohmann::ordered_json(value) : nullptr;
         json["active_mean"] = report.active;
         json["steps_mean"] = report.steps;
     }

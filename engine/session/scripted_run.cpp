@@ -186,7 +186,10 @@ void ScriptedRun::answer_reading(const World& world, const std::string& atoms) {
 void ScriptedRun::save(const World& world, const std::string& file) const {
     const std::string title =
         fmt::format("{}, after {} s", scene_.title, ticks_.front().reading.time_s);
-    write_text_files(format_coordinates(world, select_atoms(world, {}), file, title));
+    std::vector<TextFile> files = format_coordinates(world, select_atoms(world, {}), file, title);
+    for (TextFile& each : files)
+        each.existing = check_output(each.path, coordinates_mark(each.path), ends_.overwrites);
+    write_text_files(files);
 }
 
 }  // namespace palpa

@@ -29,6 +29,8 @@ struct ScriptEnds {
     // Sets the target of the handle (m, from the centre of the workspace). Throws LoadError if this
     // hand cannot be moved so.
     std::function<void(std::size_t hand, const Vec3& place_m)> lead;
+    // Whether `save` may replace coordinates that Palpa wrote.
+    bool overwrites = false;
 };
 
 // Answers are {"ok":true, ...} or {"ok":false,"error":"...","line":N}; a refused line changes

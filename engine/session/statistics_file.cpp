@@ -19,6 +19,7 @@ constexpr auto ticks_per_row = static_cast<std::uint64_t>(servo_rate_hz);
 const fs::path& make_room(const fs::path& path, bool overwrites) {
     if (check_output(path, statistics_header, overwrites) == Existing::Refuse) return path;
     std::error_code error;
+    if (!fs::is_regular_file(path, error)) return path;  // a device or a pipe
     fs::remove(path, error);
     if (error) throw LoadError({path.string()}, "cannot be replaced: " + error.message());
     return path;

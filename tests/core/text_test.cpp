@@ -48,6 +48,10 @@ TEST_CASE("what cannot be printed is written in hexadecimal digits", "[core][tex
     // After RFC 3629: a letter cut off, a lone follower, overlong forms, a surrogate, beyond the
     // last.
     CHECK(printable("\xc3") == "\\xc3");
+    // What turns the direction of a text: letters would be shown in another order.
+    CHECK(printable("a\u202eb") == "a\\xe2\\x80\\xaeb");
+    CHECK(printable("\u2066") == "\\xe2\\x81\\xa6");
+    CHECK(printable("\u2022 \u2065") == "\u2022 \u2065");
     CHECK(printable("\x85x") == "\\x85x");
     CHECK(printable("\xc0\x80") == "\\xc0\\x80");
     CHECK(printable("\xe0\x9f\xbf") == "\\xe0\\x9f\\xbf");

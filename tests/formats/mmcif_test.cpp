@@ -402,6 +402,6 @@ hydrog1 hydrog A DA 1 ? N1 1_555 B DT 2 N3 ? 1_555
 TEST_CASE("of atoms that an mmCIF file repeats the first are taken", "[formats][mmcif]") {
     const Structure structure = parse_mmcif(replaced(text, "CA   B ALA", "CA   A ALA"), "w.cif");
 
-    CHECK_THAT(structure.repeated,
+    CHECK_THAT(structure.doubts.back(),
                StartsWith("atom chain H ALA 27 CA (location A) of line 34 is repeated on line 35"));
 }

@@ -228,7 +228,7 @@ TEST_CASE("of atoms that a PDB file repeats the first are taken", "[formats][pdb
 
     CHECK(structure.names.size() == parse_pdb(pdb_text, "w.pdb").names.size() - 1);
     CHECK(structure.positions[1].x() == 11.639);
-    CHECK_THAT(structure.repeated,
+    CHECK_THAT(structure.doubts.back(),
                StartsWith("atom chain A ALA 27 CA (location A) of line 4 is repeated on line 5"));
 
     std::string many;

@@ -163,11 +163,13 @@ TEST_CASE("a value of the wrong type is told with what it is and should be", "[s
         {"[coupling]\nclamp_N = \"3\"", 18, 11,
          "'coupling.clamp_N' is the text \"3\"; expected a number"},
         {"[coupling]\nclamp_N = true", 18, 11, "'coupling.clamp_N' is true; expected a number"},
-        {"[coupling]\nclamp_N = [1]", 18, 11, "'coupling.clamp_N' is a list; expected a number"},
+        {"[coupling]\nclamp_N = [1]", 18, 11,
+         "'coupling.clamp_N' is the list [1]; expected a number"},
         {"[coupling]\nclamp_N = 2020-01-01", 18, 11, "is a date or time; expected a number"},
         {"[hand]\nstart_angstrom = \"far\"", 18, 18, "expected a number"},
         {"[coupling]\nfeel_pN = [1, 2, 3]", 18, 11, "expected two numbers from 0.001 to 1000000"},
         {"[coupling]\nfeel_pN = [0, 2]", 18, 11, "expected two numbers from 0.001"},
+        {"[coupling]\nfeel_pN = [nan, 2]", 18, 11, "is the list [nan, 2]; expected two numbers"},
         {"[coupling]\nfeel_pN = 20", 18, 11, "expected two numbers from 0.001"},
         {"[coupling]\nfeel_within_pN = 0", 18, 18, "'coupling.feel_within_pN' is 0"},
         {"[hand]\nstart_offset_angstrom = [1, 2]", 18, 25, "expected three numbers from -1000"},
@@ -269,7 +271,11 @@ TEST_CASE("a file that a scene names must be there", "[scene][errors]") {
                         "how to make the file)") &&
                    !Contains("make_it"));
     // A folder is no file.
-    CHECK_THAT(error_of(replaced(base, "dimer.crd", "../water")), StartsWith(at(5, 13)));
+    CHECK_THAT(error_of(replaced(base, "dimer.crd", "../water")),
+               StartsWith(at(5, 13)) && Contains("not a regular file"));
+    // The system would read it as a shorter name.
+    CHECK_THAT(error_of(replaced(base, "dimer.crd", "dimer.crd\\u0000")),
+               StartsWith(at(5, 13)) && Contains("expected a file name in quotes"));
 }
 
 TEST_CASE("a scene names only files below its folder, wherever links lead", "[scene][errors]") {

@@ -346,7 +346,8 @@ class Cli(unittest.TestCase):
         self.assertIn("vibrates", self.palpa("run", "--check", WATER, "--mode", "1").stdout)
 
     def test_lost_output_is_no_success(self):
-        for arguments in (["run", WATER, "--headless", "--seconds", "0.1"], ["run", "--keys"], ["bench", WATER]):
+        for arguments in (["run", WATER, "--headless", "--seconds", "0.1"], ["run", "--keys"], ["bench", WATER],
+                          ["help", "run"], ["run", "--help"]):
             with self.subTest(arguments=arguments), open("/dev/full", "w") as full:
                 result = subprocess.run([PROGRAM, *map(str, arguments)], stdout=full,
                                         stderr=subprocess.PIPE, text=True)

@@ -389,6 +389,23 @@ class Prepare(PrepareCase):
         self.assertIn("system.crd", result.stderr)
         self.assertEqual([path.name for path in blocked.iterdir()], ["system.crd"])
 
+    def test_what_replaces_a_preparation_leaves_nothing_of_it(self):
+        crambin = self.data / "structures" / "1crn.pdb"
+        folder = self.folder / "replaced"
+        for structure, *options in ((crambin,), (self.data / "structures" / "alanine_dipeptide.pdb", "--no-scene")):
+            result = self.palpa("prepare", structure, "--toppar", *self.toppar(), "-o", folder, "--overwrite", *options)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual((folder / "scene.toml").exists(), not options)
+            (folder / "notes.txt").write_text("mine")
+        self.assertEqual({path.name for path in folder.iterdir()},
+                         {"system.psf", "system.pdb", "system.crd", "system.prm", "report.txt", "notes.txt"})
+
+    def test_a_file_that_may_be_cut_off_is_a_warning(self):
+        whole = (self.data / "structures" / "1crn.pdb").read_text()
+        (self.folder / "cut.pdb").write_text(whole[:whole.index("ATOM    200")])
+        folder = self.prepare(self.folder / "cut.pdb", self.toppar())
+        self.assertIn("no END record: the file may be cut off", (folder / "report.txt").read_text())
+
     def test_nothing_is_overwritten_unasked(self):
         structure = self.data / "structures" / "alanine_dipeptide.pdb"
         folder = self.prepare(structure, self.toppar()[:2])

@@ -131,6 +131,12 @@ class Replay(unittest.TestCase):
         refused = palpa("replay", self.folder, "--verify")
         self.assertEqual(refused.returncode, 2)
         self.assertIn("recording format 3.0 is newer than this program", refused.stderr)
+        for stated in ("banana", "99999999999999999999"):
+            session.write_text(text.replace(line, f"# Recording format {stated}\n"))
+            refused = palpa("replay", self.folder, "--verify")
+            self.assertEqual(refused.returncode, 2)
+            number = text.splitlines().index(line.strip()) + 1
+            self.assertIn(f"session.toml:{number}: '{stated}' is not the number of a recording's format", refused.stderr)
         session.write_text(text.replace('format = "2.0"', 'format = "3.1"'))
         refused = palpa("run", session, "--headless")
         self.assertEqual(refused.returncode, 2)

@@ -42,6 +42,14 @@ class Scripting(unittest.TestCase):
         self.assertEqual([row[0] for row in rows], ["40", "30", "20", "10", "0"])
         self.assertLess(float(rows[-1][1]), float(rows[0][1]))
 
+    def test_save_replaces_own_files_alone_and_only_with_overwrite(self):
+        (self.folder / "mine.pdb").write_text("not from this program\n")
+        lines = 'save = "now.pdb"\nsave = "mine.pdb"\n'
+        for options, expected in (((), [True, False]), ((), [False, False]), (("--overwrite",), [True, False])):
+            _, answers = self.script(lines, *options)
+            self.assertEqual([answer["ok"] for answer in answers], expected)
+        self.assertEqual((self.folder / "mine.pdb").read_text(), "not from this program\n")
+
     def test_a_recording_is_that_of_the_same_edits(self):
         lines, before = [], 0
         for at_s, edit in EDITS:

@@ -127,9 +127,7 @@ void check_outputs(const PrepareOptions& options) {
         check_missing_folder(options.folder);
         return;
     }
-    for (const char* const name :
-         {"system.psf", "system.pdb", "system.crd", "system.prm", "report.txt", "approximate.str",
-          "scene.toml", "relaxed.crd", "scene.psf"}) {
+    for (const char* const name : prepared_names) {
         (void)check_output(options.folder / name, prepared_mark, options.overwrites);
     }
 }

@@ -206,8 +206,6 @@ void print_accuracy(const AccuracyReport& f) {
                 "              {:.1f} degrees of freedom and {:.1f} steps in a period on average\n",
                 f.active, f.steps);
         }
-    } else if (f.within_pN) {
-        fmt::print("  compared    no comparison: the run is too short, or not guarded\n");
     }
     const std::vector<std::string> not_met = find_unmet(f).all();
     if (not_met.empty()) fmt::print("  not met     nothing\n");

@@ -207,7 +207,7 @@ int run_without_window(SceneDescription scene, World& world,
     std::optional<ServedRun> served;
     if (server) served.emplace(*server, options.serve, progress);
     std::optional<ScriptedRun> scripted;
-    if (options.commands) scripted.emplace(scene, standard_ends(devices));
+    if (options.commands) scripted.emplace(scene, standard_ends(devices, options.overwrites));
     std::optional<StatisticsFile> statistics;
     if (options.statistics) statistics.emplace(*options.statistics, options.overwrites);
     const auto before_step = [&](World& next, const EditFunction& edit) {

@@ -9,10 +9,12 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstddef>
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 
 namespace palpa {
@@ -50,7 +52,8 @@ private:
 
 void print_answer(const std::string& answer) {
     fmt::print("{}\n", answer);
-    std::fflush(stdout);  // whoever asked waits for it
+    if (std::fflush(stdout) == 0) return;  // whoever asked waits for it
+    throw std::system_error(errno, std::generic_category(), "standard output");
 }
 
 void lead_hand(Device& device, const Vec3& place_m) {
@@ -71,10 +74,11 @@ void lead_hand(Device& device, const Vec3& place_m) {
 
 }  // namespace
 
-ScriptEnds standard_ends(std::span<const std::unique_ptr<Device>> devices) {
+ScriptEnds standard_ends(std::span<const std::unique_ptr<Device>> devices, bool overwrites) {
     return {
         [lines = InputLines()]() mutable { return lines.next(); }, print_answer,
-        [devices](std::size_t hand, const Vec3& place_m) { lead_hand(*devices[hand], place_m); }};
+        [devices](std::size_t hand, const Vec3& place_m) { lead_hand(*devices[hand], place_m); },
+        overwrites};
 }
 
 SceneDescription without_end(SceneDescription scene) {

@@ -10,7 +10,7 @@
 namespace palpa {
 
 // By the lines of standard input, over the devices of the scene's hands, which outlive it.
-ScriptEnds standard_ends(std::span<const std::unique_ptr<Device>> devices);
+ScriptEnds standard_ends(std::span<const std::unique_ptr<Device>> devices, bool overwrites);
 
 // Long enough for whatever is asked for: such a run ends where its input does.
 SceneDescription without_end(SceneDescription scene);

@@ -4,6 +4,7 @@
 #include "core/load_error.h"
 #include "core/machine.h"
 #include "core/version.h"
+#include "scene/find_scene.h"
 #include "scene/read_scene.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
@@ -88,6 +89,15 @@ Existing check(const ReportOptions& options) {
     return check_output(options.output, page_mark, options.overwrites);
 }
 
+// The path itself where there is no such scene.
+std::filesystem::path find_flexible(const std::filesystem::path& named) {
+    try {
+        return find_scene_file(named);
+    } catch (const LoadError&) {
+        return named;
+    }
+}
+
 }  // namespace
 
 void report_progress(const std::string& what) {
@@ -95,7 +105,9 @@ void report_progress(const std::string& what) {
     (void)std::fflush(stderr);
 }
 
-int report_command(const ReportOptions& options) {
+int report_command(const ReportOptions& given) {
+    ReportOptions options = given;
+    options.flexible = find_flexible(given.flexible);
     const Existing existing = check(options);
     std::vector<ReportSection> sections;
     double total = 0;
