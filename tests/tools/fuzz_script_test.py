@@ -15,6 +15,7 @@ def fuzz(*arguments):
 class Fuzz(unittest.TestCase):
     def test_what_is_no_time_or_no_fuzzer_is_refused_before_anything_is_built(self):
         for arguments, said in (([], "expected a number"), (["ten"], "MINUTES is 'ten'"),
+                                (["0"], "at least a second"),
                                 (["1", "nothing"], "there is no fuzzer 'nothing'")):
             result = fuzz(*arguments)
             self.assertEqual(result.returncode, 2, arguments)

@@ -1,5 +1,6 @@
 """tools/scripts/package: what is in the Debian package and in the archive, and that both run unpacked."""
 import gzip
+import json
 import os
 import re
 import shutil
@@ -139,6 +140,20 @@ class Package(unittest.TestCase):
                 self.assertGreaterEqual(len(row), 4)
                 self.assertNotRegex(row[3], r"^(AGPL|GPL)")
                 self.assertTrue((documents / "libraries" / f"{row[1]}.txt").stat().st_size)
+
+    def test_both_have_the_notices_of_what_is_compiled_in(self):
+        libraries = json.loads(run(PROGRAM, "licences", "--json", check=True).stdout)["libraries"]
+        compiled_in = [library["name"] for library in libraries if not library["files"]]
+        holder = {"CLI11": "University of Cincinnati", "Eigen": "Benoit Jacob", "gemmi": "Global Phasing",
+                  "GLM": "G-Truc Creation", "Dear ImGui": "Omar Cornut", "JSON for Modern C++": "Niels Lohmann",
+                  "PEGTL": "Colin Hirsch"}
+        self.assertEqual(set(compiled_in), set(holder))
+        for share in (self.usr / "share", self.portable / "share"):
+            texts = [file.read_text() for file in (share / "doc/palpa/compiled-in").iterdir()]
+            self.assertEqual(len(texts), len(holder))
+            for name, words in holder.items():
+                with self.subTest(library=name):
+                    self.assertTrue(any(words in text for text in texts))
 
     def test_the_readme_names_the_oldest_system(self):
         text = (self.portable / "README").read_text()

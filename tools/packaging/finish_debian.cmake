@@ -9,5 +9,6 @@ get_filename_component(documents ${licence} DIRECTORY)
 file(REMOVE ${licence})  # its words are in `copyright`
 file(COPY ${CPACK_PALPA_FILES}/copyright ${CPACK_PALPA_FILES}/changelog DESTINATION ${documents}
     FILE_PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
+include(${CMAKE_CURRENT_LIST_DIR}/copy_notices.cmake)
 # Without name and time, so that the same files make the same package.
 execute_process(COMMAND gzip -9nf ${documents}/changelog ${manual} COMMAND_ERROR_IS_FATAL ANY)

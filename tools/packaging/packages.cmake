@@ -5,7 +5,7 @@ set(PALPA_MAINTAINER "The Palpa authors <palpa@example.org>" CACHE STRING
     "Whom the Debian package names as its maintainer: NAME <ADDRESS>")
 string(TOLOWER "${CMAKE_SYSTEM_NAME}-${CMAKE_SYSTEM_PROCESSOR}" system)
 
-if(UNIX AND NOT CMAKE_CROSSCOMPILING)
+if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
     install(FILES ${packaging}/palpa.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
     install(FILES ${packaging}/palpa.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
     install(FILES ${packaging}/palpa.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages)
