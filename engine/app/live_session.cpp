@@ -485,8 +485,10 @@ void LiveSession::record_what_happened() {
     recorder_.note_overruns(overruns_);
     journal_queue_.hand_to(recorder_);
     for (const TrajectoryShot& shot : trajectory_queue_.take()) recorder_.add(shot);
-    if (std::string failure = recorder_.take_failure(); !failure.empty())
+    if (std::string failure = recorder_.take_failure(); !failure.empty()) {
+        trajectory_queue_.end();
         recording_problem_ = std::move(failure);
+    }
 }
 
 }  // namespace palpa
