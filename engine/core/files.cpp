@@ -178,7 +178,7 @@ void write_text_files(std::span<const TextFile> files) {
         draft.emplace(file.path).write(file.text);
     }
     for (std::size_t i = 0; i < files.size(); ++i) {
-        if (drafts[i]) drafts[i]->move(files[i].existing);
+        if (const std::optional<Draft>& draft = drafts[i]) draft->move(files[i].existing);
     }
     for (const TextFile& file : files) {
         if (is_stream(file.path)) write_into(file.path, file.text);

@@ -111,9 +111,10 @@ void SessionRecorder::begin(const std::filesystem::path& folder, bool overwrites
                         "cannot be recorded: the session is too long, or the disk was full, so "
                         "not all of it is kept; open the scene again and record from the start");
     }
-    recording_.emplace(folder, scene_, overwrites, devices_.size(), RecordedBy::Journal);
+    Recording& recording =
+        recording_.emplace(folder, scene_, overwrites, devices_.size(), RecordedBy::Journal);
     try {
-        write_beginning(folder, trajectory);
+        write_beginning(recording, folder, trajectory);
     } catch (const LoadError&) {
         recording_.reset();
         throw;
@@ -122,18 +123,17 @@ void SessionRecorder::begin(const std::filesystem::path& folder, bool overwrites
 }
 
 // The whole session so far, and the mark where this recording begins, which is its alone.
-void SessionRecorder::write_beginning(const std::filesystem::path& folder,
+void SessionRecorder::write_beginning(Recording& recording, const std::filesystem::path& folder,
                                       const std::optional<TrajectorySettings>& trajectory) {
-    for (const KeptFile& file : files_) recording_->add_input(file.name, file.content);
-    if (trajectory) recording_->begin_trajectory(*trajectory);
-    if (!kept_.hand_to(
-            [&](std::string_view text) { recording_->add_journal(std::string(text)); })) {
+    for (const KeptFile& file : files_) recording.add_input(file.name, file.content);
+    if (trajectory) recording.begin_trajectory(*trajectory);
+    if (!kept_.hand_to([&](std::string_view text) { recording.add_journal(std::string(text)); })) {
         throw LoadError({folder.string()},
                         "cannot be recorded: the session's beginning, in a temporary file, could "
                         "not be read back");
     }
     writer_.begin_recording();
-    recording_->add_journal(writer_.take());
+    recording.add_journal(writer_.take());
 }
 
 void SessionRecorder::end() {

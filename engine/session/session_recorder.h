@@ -67,7 +67,7 @@ private:
 
     const std::string& keep(const std::filesystem::path& path, const std::string& content);
     void flush();
-    void write_beginning(const std::filesystem::path& folder,
+    void write_beginning(Recording& recording, const std::filesystem::path& folder,
                          const std::optional<TrajectorySettings>& trajectory);
     // Calls `write` with the recording, if there is one, and ends it where that throws LoadError.
     template <class Write>
