@@ -160,9 +160,10 @@ endmacro()
 macro(palpa_provide_imgui)
     palpa_take(imgui)
     palpa_library(imgui::imgui ${palpa_headers}/imgui ${palpa_headers}/imgui/backends)
-    # C++ calls the functions the same on both systems, but for those that take a size_t.
+    # C++ calls the functions the same on both systems, but for a size_t: behind a char* its name changes.
     file(GLOB library /usr/lib/*/libimgui.a)
     execute_process(COMMAND nm --defined-only ${library} OUTPUT_VARIABLE text COMMAND_ERROR_IS_FATAL ANY)
+    string(REPLACE "Pcm" "Pcy" text "${text}")
     palpa_link(imgui::imgui imgui.dll "${text}" " T (_Z[A-Za-z0-9_]+)")
     # Its one variable that is ours to see.
     file(WRITE ${CMAKE_BINARY_DIR}/imgui_context.cpp "struct ImGuiContext;\nextern ImGuiContext* GImGui;\nImGuiContext* GImGui = nullptr;\n")
