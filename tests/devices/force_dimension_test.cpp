@@ -90,7 +90,8 @@ TEST_CASE("an omega is opened with its limits, motors on, weight carried",
         INFO(check.layer << ": " << check.found);
         CHECK(check.outcome == (check.layer == "bus" ? CheckOutcome::Unknown : CheckOutcome::Ok));
     }
-    CHECK(dhd_check_of(omega.opened, "library").found == PALPA_FORCE_DIMENSION_STUB);
+    CHECK(std::filesystem::path(dhd_check_of(omega.opened, "library").found) ==
+          PALPA_FORCE_DIMENSION_STUB);
 }
 
 TEST_CASE("every type has its limits, and one that is not known an omega's",
