@@ -227,7 +227,7 @@ TEST_CASE("a file that an edit names is an input as others are", "[session][reco
         << "[[edits]]\nat_s = 0.02\nadd = { structure = \"added.crd\", segment = \"LEFT\", "
            "name = \"w2\", at_angstrom = [0, 4, 0] }\n";
     const std::string text = read_text_file(water / "three.crd");
-    std::ofstream(scene / "added.crd") << text;
+    std::ofstream(scene / "added.crd", std::ios::binary) << text;
     const std::string hash = scene_hash(read_scene(scene));
 
     record(scene, folder.path() / "a", {"seconds=0.1"});
