@@ -180,8 +180,8 @@ void write_text_files(std::span<const TextFile> files) {
     for (std::size_t i = 0; i < files.size(); ++i) {
         if (const std::optional<Draft>& draft = drafts[i]) draft->move(files[i].existing);
     }
-    for (const TextFile& file : files) {
-        if (is_stream(file.path)) write_into(file.path, file.text);
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        if (!drafts[i]) write_into(files[i].path, files[i].text);
     }
 }
 
