@@ -28,7 +28,7 @@ struct RelaxSettings {
 enum class RelaxEnd : std::uint8_t {
     Converged,  // the tolerance is reached
     Steps,      // the number of steps is used up, or `on_step` returned false
-    Stuck,      // no step lowers the energy by more than rounding
+    Stuck,      // no step lowers the energy, or the forces where rounding hides it
     NotFinite,  // energy or forces are not finite
 };
 

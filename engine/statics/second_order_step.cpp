@@ -315,21 +315,22 @@ private:
 
     // Where hands stand still, after some steps everything relaxes on the whole energy alone: along
     // soft coordinates the model's minimum may lie where the energy is higher. False where there
-    // is nothing else to do.
+    // is nothing else to do; a hand that creeps is followed.
     bool prepare_still(double way) {
+        constexpr double rounding = 1e-9;  // Å
         if (has_moved() || way > moved * settings_.stride) {
             statics_.still_steps = 0;
             statics_.is_at_rest = false;
             return true;
         }
-        if (statics_.is_at_rest) return way > 0;
+        if (statics_.is_at_rest) return way > rounding;
         if (is_old()) statics_.still_steps = settings_.still_steps;
         if (statics_.still_steps < settings_.still_steps) {
             ++statics_.still_steps;
             return true;
         }
         (void)renew(settings_.renews_at_once);
-        return false;
+        return report_.is_finite && way > rounding;
     }
 
     bool is_old() const {

@@ -51,11 +51,11 @@ void put_on_bodies(const TorsionModel& model, const TorsionState& state,
     }
 }
 
+}  // namespace
+
 double sum_of_terms(const TorsionState& state) noexcept {
     return state.terms.magnitude() + state.spring_energy;
 }
-
-}  // namespace
 
 void guide_pivots(const TorsionModel& model, const TorsionState& state,
                   AssemblyState& assembly) noexcept {

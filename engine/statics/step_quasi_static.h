@@ -73,6 +73,9 @@ double place_within(const TorsionModel& model, const TorsionState& from, double 
 void guide_pivots(const TorsionModel& model, const TorsionState& state,
                   AssemblyState& assembly) noexcept;
 
+// The sum of the magnitudes of the energy's terms, by which rounding grows (kcal/mol).
+double sum_of_terms(const TorsionState& state) noexcept;
+
 // Fast pairs round the energy, a sum of terms of known magnitude. For a change below that rounding
 // the work of the forces along the move, `find_work()`, decides.
 template <class FindWork>

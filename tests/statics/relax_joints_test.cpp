@@ -224,7 +224,8 @@ TEST_CASE("where rounding hides what is lower a minimiser is stuck, at rest by a
     const JointRelaxReport report = relax_joints(model, settings, state, statics);
 
     CHECK(report.end == RelaxEnd::Stuck);
-    CHECK(report.rms_force < 1e-3);
+    // Where values alone decide, both end above 3e-6.
+    CHECK(report.rms_force < (settings.method == RelaxMethod::LimitedMemory ? 1e-7 : 1e-5));
     CHECK(report.rms_force > 0);
 }
 

@@ -545,16 +545,18 @@ TEST_CASE("while a hand stands still the whole energy never rises, and comes to 
 TEST_CASE("a slow hand is followed, and renews the model by its way alone",
           "[statics][second-order]") {
     HeldPair c;
+    // Å a step: below and about what counts as a move (0.001 Å), and where two steps come to it.
+    const double by = GENERATE(0.0002, 0.0003, 0.0005, 0.0006);
     SecondOrderStatics statics = build_second_order_statics(c.model, c.held);
     REQUIRE(step_second_order(c.model, c.settings, c.state, statics).is_finite);
     const std::size_t before = statics.renewed;
     for (int k = 0; k < 400; ++k) {
-        c.move_hand({0.0005, 0, 0});
+        c.move_hand({by, 0, 0});
         const Vec3 wanted = c.state.positions[c.model.bases[0].pivot];
         REQUIRE(step_second_order(c.model, c.settings, c.state, statics).is_finite);
         CHECK((c.state.positions[c.model.bases[0].pivot] - wanted).norm() < 1e-9);
     }
-    CHECK(statics.renewed - before <= 4);  // 0.2 Å, every 0.1 Å, or an atom every 0.3 Å
+    CHECK(statics.renewed - before <= 4);  // 0.24 Å at most, every 0.1 Å, or an atom every 0.3 Å
 }
 
 TEST_CASE("out and back without a snap the hand's force is what it was",
