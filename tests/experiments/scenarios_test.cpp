@@ -10,14 +10,11 @@ namespace {
 
 const std::string two_waters = test::in_project("scenes/water");
 
-}  // namespace
-
-TEST_CASE("500 random hands on two waters: no energy from nothing, no vibration, none goes through",
-          "[experiments][coupling]") {
+void play_random_hands(std::size_t count) {
     const std::vector<ScenarioResult> results =
-        play_scenarios({.scene = two_waters, .settings = {}, .count = 500}, {});
+        play_scenarios({.scene = two_waters, .settings = {}, .count = count}, {});
 
-    REQUIRE(results.size() == 500);
+    REQUIRE(results.size() == count);
     for (std::size_t i = 0; i < results.size(); ++i) {
         const ScenarioResult& result = results[i];
         INFO("scenario " << i << ": " << result.generated_J << " J, " << result.ripple_N << " N, "
@@ -26,6 +23,17 @@ TEST_CASE("500 random hands on two waters: no energy from nothing, no vibration,
         // 10 nN, 3 bodies that share it.
         CHECK(result.closest_angstrom > 2.29);
     }
+}
+
+}  // namespace
+
+TEST_CASE("100 random hands on two waters: no energy from nothing, no vibration, none goes through",
+          "[experiments][coupling]") {
+    play_random_hands(100);
+}
+
+TEST_CASE("500 random hands on two waters keep the same limits", "[experiments][long]") {
+    play_random_hands(500);
 }
 
 TEST_CASE("the paper's coupling misses the limits of the scenarios", "[experiments][coupling]") {
