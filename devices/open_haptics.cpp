@@ -410,8 +410,7 @@ void OpenHaptics::keep() {
         hd::Code error = hd::success;
         handle_ = find_device(library_, settings_.device_name, error);
         if (handle_ != hd::no_device) {
-            is_lost_ = false;
-            state_ = State::Starting;
+            is_lost_ = false;  // the state stays Lost until its first tick
             start();
         }
         lock.lock();
