@@ -97,7 +97,7 @@ public:
         if (settings_.step.forces.fast)
             return is_lower(settings_.step.forces, state_, statics_.trial, move_);
         if (is_sufficient(state_.energy(), value, linear_change)) return true;
-        // Near rest rounding hides what a move gains: there smaller forces decide.
+        // Rounding may hide what a move gains: there smaller forces decide.
         constexpr double rounding = 1e-14;
         return std::abs(value - state_.energy()) <= rounding * sum_of_terms(state_) &&
                trial_forces().norm() < forces().norm();
@@ -105,7 +105,7 @@ public:
 
     void accept() { take_over(statics_.trial, state_); }
 
-    // Whether there was a step that lowers the energy.
+    // Whether there was a step that is accepted.
     bool step() {
         if (settings_.method == RelaxMethod::LimitedMemory && !settings_.precondition) {
             compliance_ = find_compliance(model_, state_);

@@ -28,7 +28,7 @@ struct RelaxSettings {
 enum class RelaxEnd : std::uint8_t {
     Converged,  // the tolerance is reached
     Steps,      // the number of steps is used up, or `on_step` returned false
-    Stuck,      // no step lowers the energy, or the forces where rounding hides it
+    Stuck,      // no step lowers the energy or, where its change is below rounding, the forces
     NotFinite,  // energy or forces are not finite
 };
 
@@ -47,7 +47,7 @@ struct RelaxProgress {
 };
 
 // Relaxes until the rms force along the coordinates is below the tolerance. The energy never rises
-// from step to step, except by rounding of fast pairs. At the end the state has its positions,
+// from step to step, except by rounding. At the end the state has its positions,
 // forces and coordinate forces. `on_step` may be empty; if it returns false, relaxation ends.
 JointRelaxReport relax_joints(const TorsionModel& model, const RelaxSettings& settings,
                               TorsionState& state, QuasiStatics& statics,

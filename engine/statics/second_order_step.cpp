@@ -314,10 +314,10 @@ private:
     }
 
     // Where hands stand still, after some steps everything relaxes on the whole energy alone: along
-    // soft coordinates the model's minimum may lie where the energy is higher. False where there
-    // is nothing else to do; a hand that creeps is followed.
+    // soft coordinates the model's minimum may lie where the energy is higher. Returns whether
+    // the hands are still to be followed.
     bool prepare_still(double way) {
-        constexpr double rounding = 1e-9;  // Å
+        constexpr double rounding = 1e-9;  // Å: a longer way is a hand that creeps
         if (has_moved() || way > moved * settings_.stride) {
             statics_.still_steps = 0;
             statics_.is_at_rest = false;
@@ -330,7 +330,29 @@ private:
             return true;
         }
         (void)renew(settings_.renews_at_once);
-        return report_.is_finite && way > rounding;
+        if (report_.is_finite && way > rounding) creep();
+        return false;
+    }
+
+    // Hands go on with all that follows them linearly, without a relaxation on the model.
+    void creep() {
+        const Eigen::VectorXd by = left(), at = statics_.at;
+        report_.lags = is_beyond(by);
+        if (report_.lags) return;
+        follow_linearly(model_, settings_, by, state_, statics_);
+        if (!model_holds()) move_hands_alone(at, by);
+        evaluate();
+    }
+
+    void move_hands_alone(const Eigen::VectorXd& from, const Eigen::VectorXd& by) {
+        statics_.at = from;
+        statics_.at.tail(linear().hands()) += by;
+        place();
+    }
+
+    void evaluate() {
+        evaluate_placed(model_, settings_.forces, linear(), statics_.at, statics_.near, state_,
+                        statics_.value);
     }
 
     bool is_old() const {
@@ -405,11 +427,8 @@ private:
             statics_.refused_way = find_farthest_way(hands(), at.tail(linear().hands()) + by);
             return false;
         }
-        statics_.at.tail(linear().hands()) += by;
-        place();
-        if (!settings_.renews_at_once)
-            evaluate_placed(model_, settings_.forces, linear(), statics_.at, statics_.near, state_,
-                            statics_.value);
+        move_hands_alone(at, by);
+        if (!settings_.renews_at_once) evaluate();
         return false;
     }
 

@@ -73,7 +73,7 @@ double place_within(const TorsionModel& model, const TorsionState& from, double 
 void guide_pivots(const TorsionModel& model, const TorsionState& state,
                   AssemblyState& assembly) noexcept;
 
-// The sum of the magnitudes of the energy's terms, by which rounding grows (kcal/mol).
+// The sum of the absolute terms of the energy, to which its rounding is proportional (kcal/mol).
 double sum_of_terms(const TorsionState& state) noexcept;
 
 // Fast pairs round the energy, a sum of terms of known magnitude. For a change below that rounding

@@ -210,7 +210,7 @@ TEST_CASE("a way to rest ends where it has to, and says why", "[statics][relax]"
     }
 }
 
-TEST_CASE("where rounding hides what is lower a minimiser is stuck, at rest by any measure",
+TEST_CASE("where rounding hides what is lower smaller forces decide, until a minimiser is stuck",
           "[statics][relax]") {
     const TorsionModel model =
         test::model_of(test::tetrapeptide(), {BaseFreedom::Held}, test::all_joints);
@@ -218,15 +218,21 @@ TEST_CASE("where rounding hides what is lower a minimiser is stuck, at rest by a
     settings.method = GENERATE(RelaxMethod::LimitedMemory, RelaxMethod::InverseMass);
     settings.force_tolerance = 0;
     settings.steps = 20000;
-    TorsionState state = build_torsion_state(model);
-    QuasiStatics statics = build_quasi_statics(model);
 
-    const JointRelaxReport report = relax_joints(model, settings, state, statics);
+    std::vector<double> ends;
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+        TorsionState state = test::state_after(model, 0.05, seed);
+        QuasiStatics statics = build_quasi_statics(model);
+        const JointRelaxReport report = relax_joints(model, settings, state, statics);
+        CHECK(report.end == RelaxEnd::Stuck);
+        CHECK(report.rms_force < 1e-5);
+        CHECK(report.rms_force > 0);
+        ends.push_back(report.rms_force);
+    }
 
-    CHECK(report.end == RelaxEnd::Stuck);
-    // Where values alone decide, both end above 3e-6.
-    CHECK(report.rms_force < (settings.method == RelaxMethod::LimitedMemory ? 1e-7 : 1e-5));
-    CHECK(report.rms_force > 0);
+    std::ranges::sort(ends);
+    CAPTURE(ends);
+    CHECK(ends[2] < 1e-6);  // 4e-6 and more where values alone decide
 }
 
 TEST_CASE("nothing that moves is at rest", "[statics][relax]") {
