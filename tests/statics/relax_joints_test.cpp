@@ -232,7 +232,7 @@ TEST_CASE("where rounding hides what is lower smaller forces decide, until a min
 
     std::ranges::sort(ends);
     CAPTURE(ends);
-    CHECK(ends[2] < 1e-6);  // 4e-6 and more where values alone decide
+    CHECK(ends[2] < 1e-6);  // where values alone decide it is above
 }
 
 TEST_CASE("nothing that moves is at rest", "[statics][relax]") {
