@@ -15,6 +15,7 @@ EmulatedOmniSettings build_emulated_omni(const SceneDescription& scene, const Ha
         .encoder_step_m = scene.device.encoder_step_mm * 1e-3,
         .hand = hand_model(list_hands(scene).at(slot).hand.grip),
         .script = script,
+        .servo_delay_ticks = static_cast<int>(scene.device.servo_delay_ticks),
     };
 }
 

@@ -95,6 +95,7 @@ void EmulatedOmni::write(const Vec3& force_newton) noexcept {
         drive = follow_mouse(*led_to_m_);
     } else if (settings_.driver == HandDriver::Mouse) {
         drive = follow_mouse(time_.target_m());
+        buttons_ = time_.buttons();
     } else if (settings_.driver == HandDriver::Operator) {
         drive = follow_operator();
     } else if (!released_) {
@@ -123,7 +124,7 @@ void EmulatedOmni::write(const Vec3& force_newton) noexcept {
     ++tick_;
 }
 
-void EmulatedOmni::show(const ContactModel& contact) noexcept {
+void EmulatedOmni::show(const ContactModel& contact, const Vec3& /*waiting_m*/) noexcept {
     operator_.see({units::metre_per_angstrom * contact.molecule.place_angstrom,
                    contact.displacement_gain, true_position_m(), contact.start});
 }

@@ -35,6 +35,7 @@ struct EmulatedOmniSettings {
     HandOrders* orders = nullptr;  // targets from a window or an operator
     HandDriver driver = HandDriver::Script;
     Vec3 half_workspace_m = omni_half_workspace_m;
+    int servo_delay_ticks = 1;  // of the servo's forces, for a mouse in the place of this device
 };
 
 // Runs on the servo's clock: each write() advances device and hand by one tick, exactly for the
@@ -47,7 +48,7 @@ public:
     const DeviceSpec& spec() const noexcept override { return spec_; }
     DeviceReading read() noexcept override;
     void write(const Vec3& force_newton) noexcept override;
-    void show(const ContactModel& contact) noexcept override;
+    void show(const ContactModel& contact, const Vec3& waiting_m) noexcept override;
 
     // From now on the hand follows this target (m, from the centre) as a mouse hand does, in place
     // of its script. Without a hand nothing happens. Call it on the thread that calls write().

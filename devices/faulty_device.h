@@ -32,7 +32,9 @@ public:
         : device_(device), periods_(std::move(periods)) {}
 
     const DeviceSpec& spec() const noexcept override { return device_.spec(); }
-    void show(const ContactModel& contact) noexcept override { device_.show(contact); }
+    void show(const ContactModel& contact, const Vec3& waiting_m) noexcept override {
+        device_.show(contact, waiting_m);
+    }
 
     DeviceReading read() noexcept override {
         DeviceReading reading = device_.read();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace palpa {
 namespace {
@@ -12,6 +13,23 @@ Vec3 shortened(const Vec3& way, double longest) noexcept {
 }
 
 }  // namespace
+
+double calm_mouse_stiffness(const MouseHandleSettings& settings) noexcept {
+    const double K = settings.stiffness_N_per_m;
+    const double kept = std::exp(-K * servo_tick_s / settings.damping_N_s_per_m);
+    // The phase of z^d (z - a) on the unit circle grows with the angle of z; pi makes it negative.
+    const auto phase_of = [&](double angle) {
+        return settings.delay_ticks * angle + std::atan2(std::sin(angle), std::cos(angle) - kept);
+    };
+    double below = 0, above = std::numbers::pi;
+    constexpr int halvings = 60;
+    for (int i = 0; i < halvings; ++i) {
+        const double middle = 0.5 * (below + above);
+        (phase_of(middle) < std::numbers::pi ? below : above) = middle;
+    }
+    const double magnitude = std::hypot(std::sin(above), std::cos(above) - kept);
+    return K * magnitude / (1 - kept);
+}
 
 MouseHandleSettings mouse_handle_of(const std::optional<HandModel>& hand) noexcept {
     MouseHandleSettings settings;
@@ -28,11 +46,15 @@ MouseHandle::MouseHandle(const MouseHandleSettings& settings)
       kept_(std::exp(-settings.stiffness_N_per_m * servo_tick_s / settings.damping_N_s_per_m)) {
     spec_.name = "mouse and keys";
     spec_.is_real = false;
-    spec_.half_workspace_m = settings.half_workspace_m;
+    spec_.cap_N_per_m = 0.5 * calm_mouse_stiffness(settings);
 }
 
 DeviceReading MouseHandle::read() noexcept {
-    return {static_cast<double>(tick_) * servo_tick_s, handle_m_, 0, true};
+    return {static_cast<double>(tick_) * servo_tick_s, handle_m_, time_.buttons(), true};
+}
+
+void MouseHandle::show(const ContactModel& /*contact*/, const Vec3& waiting_m) noexcept {
+    waiting_m_ = waiting_m;
 }
 
 void MouseHandle::write(const Vec3& force_newton) noexcept {
@@ -44,8 +66,13 @@ void MouseHandle::write(const Vec3& force_newton) noexcept {
                            ? shortened(force_newton, settings_.peak_force_newton)
                            : Vec3(Vec3::Zero());
     const Vec3 rest_m = wish_m_ + force / settings_.stiffness_N_per_m;
-    const Vec3& reach = settings_.half_workspace_m;
-    handle_m_ = (rest_m + kept_ * (handle_m_ - rest_m)).cwiseMax(-reach).cwiseMin(reach);
+    Vec3 moved_m = (1 - kept_) * (rest_m - handle_m_);
+    const double waiting = waiting_m_.norm();
+    if (waiting >= waits_from_m && !time_.is_clutched()) {
+        const Vec3 ahead = waiting_m_ / waiting;
+        moved_m -= std::max(0.0, moved_m.dot(ahead)) * ahead;
+    }
+    handle_m_ += moved_m;
 }
 
 void MouseHandle::step_wish() noexcept {

@@ -36,6 +36,7 @@ OpenedDevice open_emulated(const DeviceRequest& request) {
 OpenedDevice open_mouse(const DeviceRequest& request) {
     MouseHandleSettings settings = mouse_handle_of(request.emulated.hand);
     settings.orders = request.orders;
+    settings.delay_ticks = request.emulated.servo_delay_ticks;
     return {std::make_unique<MouseHandle>(settings),
             {{"window", CheckOutcome::Ok, "mouse and keys of the window", ""}}};
 }
@@ -48,6 +49,7 @@ OpenedDevice open_played(PlayedHandleSettings settings, const DeviceRequest& req
         return {nullptr, {{"file", CheckOutcome::Failed, error.what(), ""}}};
     }
     settings.orders = request.orders;
+    settings.viscosity_N_s_per_m = request.emulated.dynamics.viscosity_N_s_per_m;
     const std::string found =
         fmt::format("{} rows in {}", settings.rows.size(), request.file.string());
     return {std::make_unique<PlayedHandle>(std::move(settings)),

@@ -1,6 +1,9 @@
 // The clock of a device that runs on the servo's ticks; a window can stop it or restart it.
 #pragma once
+#include "haptics/device.h"
 #include "haptics/hand.h"
+
+#include <cstdint>
 
 namespace palpa {
 
@@ -25,7 +28,15 @@ public:
 
     // Whether the order of the last step restarted the clock.
     bool was_restarted() const noexcept { return was_restarted_; }
-    const Vec3& target_m() const noexcept { return order_.target_m; }
+    // Target of the handle: while the clutch is pressed the middle of the workspace.
+    Vec3 target_m() const noexcept {
+        return order_.is_clutched ? Vec3(Vec3::Zero()) : order_.target_m;
+    }
+    bool is_clutched() const noexcept { return order_.is_clutched; }
+    // The button bits of the device, see Button.
+    std::uint32_t buttons() const noexcept {
+        return order_.is_clutched ? static_cast<std::uint32_t>(Button::Clutch) : 0;
+    }
 
 private:
     HandOrders* orders_;

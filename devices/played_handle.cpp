@@ -16,9 +16,16 @@
 namespace palpa {
 namespace {
 
-constexpr std::array<std::string_view, 8> column_names{
-    "time_s", "handle_x_m",        "handle_y_m",        "handle_z_m",
-    "clutch", "handle_turn_x_rad", "handle_turn_y_rad", "handle_turn_z_rad"};
+constexpr std::array<std::string_view, 10> column_names{"time_s",
+                                                        "handle_x_m",
+                                                        "handle_y_m",
+                                                        "handle_z_m",
+                                                        "clutch",
+                                                        "handle_turn_x_rad",
+                                                        "handle_turn_y_rad",
+                                                        "handle_turn_z_rad",
+                                                        "cap_N_per_m",
+                                                        "at_stop"};
 constexpr std::size_t needed_columns = 4;  // the first ones
 constexpr std::size_t other_column = column_names.size();
 
@@ -30,6 +37,9 @@ constexpr std::size_t most_quoted = 40;
 
 // A turn of more would be none that a wrist makes.
 constexpr double most_turn_rad = 10;
+
+// No coupling lets a hand feel more.
+constexpr double most_cap_N_per_m = 1e9;
 
 // Which value stands where in a line.
 std::vector<std::size_t> find_columns(std::string_view header, const TextPlace& place,
@@ -98,7 +108,9 @@ PlayedRow row_of(const Values& values, const TextPlace& place) {
     const PlayedRow row{values[0],
                         {values[1], values[2], values[3]},
                         {values[5], values[6], values[7]},
-                        values[4] != 0};
+                        values[4] != 0,
+                        values[8],
+                        values[9] != 0};
     if (row.handle_m.cwiseAbs().maxCoeff() > played_reach_m) {
         throw LoadError(place,
                         fmt::format("the handle is {:.6g} m from the middle; expected at most {} m",
@@ -108,6 +120,10 @@ PlayedRow row_of(const Values& values, const TextPlace& place) {
         throw LoadError(place,
                         fmt::format("the handle is turned by {:.6g} rad; expected at most {} rad",
                                     row.turn_rad.cwiseAbs().maxCoeff(), most_turn_rad));
+    }
+    if (!(row.cap_N_per_m >= 0 && row.cap_N_per_m <= most_cap_N_per_m)) {
+        throw LoadError(place, fmt::format("cap_N_per_m is {:.6g}; expected 0 to {}",
+                                           row.cap_N_per_m, most_cap_N_per_m));
     }
     if (values[4] != 0 && values[4] != 1) {
         throw LoadError(place, fmt::format("clutch is {:.6g}; expected 0 or 1", values[4]));
@@ -173,6 +189,8 @@ PlayedHandle::PlayedHandle(PlayedHandleSettings settings)
     : settings_(std::move(settings)), time_(settings_.orders) {
     spec_.name = settings_.name;
     spec_.is_real = false;
+    spec_.viscosity_N_s_per_m = settings_.viscosity_N_s_per_m;
+    if (!settings_.rows.empty()) spec_.cap_N_per_m = settings_.rows.front().cap_N_per_m;
     // The Omni's, as most recordings are of one; more where the table needs it.
     spec_.half_workspace_m = omni_half_workspace_m;
     for (const PlayedRow& row : settings_.rows) {
@@ -183,8 +201,12 @@ PlayedHandle::PlayedHandle(PlayedHandleSettings settings)
 DeviceReading PlayedHandle::read() noexcept {
     const PlayedRow row = row_now();
     const auto buttons = row.clutch ? static_cast<std::uint32_t>(Button::Clutch) : 0U;
-    return {static_cast<double>(tick_) / servo_rate_hz, row.handle_m, buttons, true,
-            turn_of(row.turn_rad)};
+    return {.time_s = static_cast<double>(tick_) / servo_rate_hz,
+            .position_m = row.handle_m,
+            .buttons = buttons,
+            .valid = true,
+            .orientation = turn_of(row.turn_rad),
+            .at_stop = row.at_stop};
 }
 
 void PlayedHandle::write(const Vec3& /*force_newton*/) noexcept {

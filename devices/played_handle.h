@@ -22,15 +22,18 @@ struct PlayedRow {
     Vec3 handle_m = Vec3::Zero();
     Vec3 turn_rad = Vec3::Zero();  // rotation vector
     bool clutch = false;           // pressed until the next row
+    // Of the recorded device: its stiffness cap, 0 if not stated; and whether it was at a stop.
+    double cap_N_per_m = 0;
+    bool at_stop = false;
 };
 
-// Largest distance of a row from the middle along each axis, m.
-inline constexpr double played_reach_m = 0.5;
+// Largest distance of a row from the middle along each axis, m: a mouse has no end.
+inline constexpr double played_reach_m = 100;
 
 // Parses comma-separated values with a header line: time_s, handle_x_m, handle_y_m, handle_z_m and,
-// optionally, clutch (0 or 1), handle_turn_x_rad, handle_turn_y_rad, handle_turn_z_rad, in any
-// order; times must ascend. Empty lines and lines that begin with '#' are ignored. Throws LoadError
-// with `file` and the line.
+// optionally, clutch (0 or 1), handle_turn_x_rad, handle_turn_y_rad, handle_turn_z_rad, cap_N_per_m
+// and at_stop (0 or 1), in any order; times must ascend. Empty lines and lines that begin with '#'
+// are ignored. Throws LoadError with `file` and the line.
 std::vector<PlayedRow> parse_script(std::string_view text, const std::string& file);
 
 // The same for a recorded trace: other columns are ignored, and so is an incomplete last line.
@@ -43,6 +46,7 @@ std::vector<PlayedRow> read_script(const std::filesystem::path& file);
 struct PlayedHandleSettings {
     std::string name = "script";
     std::vector<PlayedRow> rows = {};  // times ascending; none: it rests in the middle
+    double viscosity_N_s_per_m = 0;    // of the device, if no row states a cap
     HandOrders* orders = nullptr;      // orders of a window to restart or stop
 };
 

@@ -155,6 +155,7 @@ void LiveSession::send(const Command& command) {
 void LiveSession::change_device(Device& device, HandOrders* orders, std::size_t slot) {
     check_period(device.spec(), orders_[slot].granted_ticks / servo_rate_hz);
     orders_[slot].target_m.setZero();
+    orders_[slot].is_clutched = false;
     if (orders) orders->post(orders_[slot]);
     const LiveDevice next{&device, orders};
     std::unique_lock lock(mutex_);
@@ -163,19 +164,29 @@ void LiveSession::change_device(Device& device, HandOrders* orders, std::size_t 
     device_changed_.wait(lock, [&] { return !device_change_; });
 }
 
-void LiveSession::move_hand(const Vec3& target_m, std::size_t slot) {
+void LiveSession::move_hand(const Vec3& target_m, std::size_t slot, bool is_clutched) {
     orders_[slot].target_m = target_m;
+    orders_[slot].is_clutched = is_clutched;
     if (devices_[slot].orders) devices_[slot].orders->post(orders_[slot]);
 }
 
-World LiveSession::copy_world() {
+void LiveSession::ask(const std::function<void()>& question) {
     std::unique_lock lock(mutex_);
-    world_wanted_ = true;
+    question_ = &question;
     has_command_.notify_one();
-    world_copied_.wait(lock, [&] { return !world_wanted_; });
-    World world = std::move(*copied_world_);
-    copied_world_.reset();
-    return world;
+    answered_.wait(lock, [&] { return !question_; });
+}
+
+World LiveSession::copy_world() {
+    std::optional<World> world;
+    ask([&] { world = simulation_.world(); });
+    return std::move(*world);
+}
+
+std::optional<UnbindingPath> LiveSession::find_unbinding() {
+    std::optional<UnbindingPath> unbinding;
+    ask([&] { unbinding = simulation_.unbinding(); });
+    return unbinding;
 }
 
 bool LiveSession::read_frame(LiveFrame& frame) {
@@ -295,7 +306,7 @@ void LiveSession::run_servo() {
             journal_queue_.push(servos_.ticks());
         }
         for (std::size_t slot = 0; slot < count; ++slot) {
-            devices_[slot].device->show(last[slot].tick.contact);
+            devices_[slot].device->show(last[slot].tick.contact, last[slot].tick.waiting_m);
             devices_[slot].device->write(last[slot].tick.sent_newton);
         }
         next += servo_tick;
@@ -341,7 +352,7 @@ void LiveSession::run_simulation() {
             {
                 std::unique_lock lock(mutex_);
                 waited = !clock_.wait_for_period(next, lock, has_command_, [&] {
-                    return stopping_ || !commands_.empty() || device_change_ || world_wanted_;
+                    return stopping_ || !commands_.empty() || device_change_ || question_;
                 });
                 commands.swap(commands_);
                 if (device_change_) {  // who asked for it waits
@@ -349,10 +360,10 @@ void LiveSession::run_simulation() {
                     device_change_.reset();
                     device_changed_.notify_one();
                 }
-                if (world_wanted_) {
-                    copied_world_ = simulation_.world();
-                    world_wanted_ = false;
-                    world_copied_.notify_one();
+                if (question_) {
+                    (*question_)();
+                    question_ = nullptr;
+                    answered_.notify_one();
                 }
             }
             for (const Command& command : commands) obey(command);

@@ -23,6 +23,7 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <memory>
 #include <mutex>
@@ -63,7 +64,8 @@ public:
     // The new device takes hold of the molecule where it is: no force, then quiet cycles and ramp.
     // Waits for the step that is under way.
     void change_device(Device& device, HandOrders* orders, std::size_t slot = 0) override;
-    void move_hand(const Vec3& target_m, std::size_t slot = 0) override;
+    void move_hand(const Vec3& target_m, std::size_t slot = 0, bool is_clutched = false) override;
+    std::optional<UnbindingPath> find_unbinding() override;
     bool read_frame(LiveFrame& frame) override;
     World copy_world() override;
     bool pop_ticks(std::span<ServoTick> ticks) noexcept override;
@@ -96,6 +98,8 @@ private:
     void obey(const Command& command);
     void make(const EditDescription& edit);
     void adopt_edit();
+    // Calls a function on the simulation's thread between two steps, and waits for it.
+    void ask(const std::function<void()>& question);
     void serve_clients(bool is_before_step);
     void change_device(const DeviceEvent& change, const LiveDevice& device);
     void post_frame_if_wanted();
@@ -130,9 +134,8 @@ private:
     };
     std::optional<DeviceChange> device_change_;  // pending change of a device
     std::condition_variable device_changed_;
-    std::optional<World> copied_world_;
-    bool world_wanted_ = false;
-    std::condition_variable world_copied_;
+    const std::function<void()>* question_ = nullptr;  // of a thread that waits for the answer
+    std::condition_variable answered_;
     const bool plays_;  // whether it plays a trajectory
     std::atomic<bool> stopping_{false}, servo_stopping_{false}, recorder_stopping_{false};
 

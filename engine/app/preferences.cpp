@@ -34,6 +34,12 @@ bool read_sound(const toml::node& value, Preferences& preferences) {
     return (preferences.sound = value.value_exact<bool>()).has_value();
 }
 
+bool read_hand_explained(const toml::node& value, Preferences& preferences) {
+    const std::optional<bool> explained = value.value_exact<bool>();
+    preferences.hand_explained = explained.value_or(false);
+    return explained.has_value();
+}
+
 bool read_text_scale(const toml::node& value, Preferences& preferences) {
     const std::optional<double> scale = preferences.text_scale = value.value<double>();
     return scale && *scale >= 0.5 && *scale <= 4;
@@ -57,12 +63,14 @@ bool read_recent(const toml::node& value, Preferences& preferences) {
     return true;
 }
 
-constexpr std::array<Preference, 6> known_keys{{
+constexpr std::array<Preference, 7> known_keys{{
     {"device", read_text<&Preferences::device>,
      "device is not text; expected a device name in quotes, such as \"mouse\""},
     {"sound", read_sound, "sound is not true or false; expected one of them"},
     {"scene", read_recent, "scene is not text; expected the file or folder of a scene, in quotes"},
     {"recent", read_recent, "recent is not a list of texts; expected scene files, [\"...\"]"},
+    {"hand_explained", read_hand_explained,
+     "hand_explained is not true or false; expected one of them"},
     {"text_scale", read_text_scale, "text_scale is not a number from 0.5 to 4 (1: the usual size)"},
     {"language", read_text<&Preferences::language>,
      "language is not text; expected a language code in quotes, such as \"de\" or \"en\""},
@@ -114,6 +122,7 @@ std::string format_preferences(const Preferences& preferences) {
         for (const std::string& file : preferences.recent) recent.push_back(file);
         table.insert("recent", std::move(recent));
     }
+    if (preferences.hand_explained) table.insert("hand_explained", true);
     if (preferences.text_scale) table.insert("text_scale", *preferences.text_scale);
     if (preferences.language) table.insert("language", *preferences.language);
     std::ostringstream text;

@@ -12,6 +12,7 @@ struct Preferences {
     std::optional<std::string> device{};  // name for --device
     std::optional<bool> sound{};          // force as a tone on or off
     std::vector<std::string> recent{};    // scenes opened before, absolute paths, newest first
+    bool hand_explained = false;          // the signs of the hand were explained in the window
     std::optional<double> text_scale{};   // scale of the window's text, relative to the display's
     std::optional<std::string>
         language{};  // language of the window, "de"; unset: from the environment

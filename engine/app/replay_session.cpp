@@ -22,9 +22,10 @@ namespace fs = std::filesystem;
 constexpr std::chrono::milliseconds slice{10};
 constexpr double slice_ticks = 1e-3 * slice.count() * servo_rate_hz;
 
-Journal read_journal(const fs::path& folder) {
+Journal read_journal(const fs::path& folder, const SceneDescription& scene) {
     const fs::path file = folder / journal_name;
     Journal journal = parse_journal(read_text_file(file), file.string());
+    complete_caps(scene, journal);
     if (journal.ticks.empty())
         throw LoadError({file.string()}, "has no tick; expected a session that had begun");
     return journal;
@@ -34,7 +35,7 @@ Journal read_journal(const fs::path& folder) {
 
 ReplaySession::ReplaySession(const fs::path& folder, const SceneDescription& scene,
                              const ViewSettings& view, const StageFunction& on_stage)
-    : folder_(folder), scene_(scene), journal_(read_journal(folder)), view_(view) {
+    : folder_(folder), scene_(scene), journal_(read_journal(folder, scene)), view_(view) {
     player_.emplace(scene_, journal_, on_stage);
     begin_anew();
     thread_ = std::thread([this] { run(); });

@@ -111,6 +111,7 @@ WindowReport Sandbox::run() {
                         next_, frame_.readout.replay};
     report.summary = hands_.front().statistics.summary();
     report.summary.device = hands_.front().device->spec().name;
+    report.summary.unbinding = session_.find_unbinding();
     for (const WindowHand& other : std::span(hands_).subspan(1)) {
         report.summary.other_hands.push_back(other.statistics.summary());
         report.summary.other_hands.back().device = other.device->spec().name;
@@ -175,10 +176,11 @@ void Sandbox::take_ticks() {
         for (std::size_t slot = 0; slot < hands_.size(); ++slot) {
             const ServoTick& tick = ticks[slot];
             WindowHand& each = hands_[slot];
-            each.handle_m = tick.reading.position_m;
-            if (tick.contact.displacement_gain > 0)
-                each.displacement_gain = tick.contact.displacement_gain;
+            each.lead.see(tick.reading.position_m, tick.contact.displacement_gain);
             each.felt_newton = tick.sent_newton.norm();
+            each.waiting_m = tick.waiting_m;
+            each.is_at_wall = tick.overtravel_m.norm() > least_overtravel_m;
+            each.is_at_stop = tick.is_at_stop && !tick.clutched;
             if (!frame_.readout.paused) each.statistics.add(tick);
         }
         if (options_.is_over && options_.is_over(ticks.front())) quitting_ = true;
@@ -219,7 +221,7 @@ void Sandbox::compose_picture() {
 void Sandbox::draw() {
     Graphics& g = *shell_.graphics();
     if (std::exchange(must_rebuild_, false)) g.swapchain.rebuild(window_.size());
-    g.ui.begin();
+    g.ui.begin(!holding_);
     std::vector<Command> commands;
     std::vector<Action> actions;
     if (has_frame_ && options_.study) {
@@ -232,7 +234,7 @@ void Sandbox::draw() {
                        is_news ? notice_ : std::string(hand().device->status()),
                        can_choose_device() ? devices_.offers : std::vector<DeviceOffer>(),
                        devices_.current, speaker_.has_value(), hover_, session_.recorded_s(),
-                       frame_.legend, selection_panel_.is_open()},
+                       frame_.legend, selection_panel_.is_open(), hand().statistics.travel()},
                       commands, actions);
         draw_selection();
     }
@@ -243,6 +245,7 @@ void Sandbox::draw() {
         draw_caption(saved_views_[*at_view_].name, free_area());
     compose_picture();  // now that the panels are laid out, and it is known what they leave free
     if (!options_.study) draw_view_labels(frame_.labels, shown_.camera);
+    if (has_frame_ && !options_.study) draw_hand();
     g.ui.end();
     for (const Command& command : commands) session_.send(command);
 

@@ -82,6 +82,10 @@ struct WindowOptions {
     PadLink* pads = nullptr;  // where game pads are posted
     DeviceMenu devices{};
     SoundChoice sound{};
+    // Whether the signs of the hand (ring, thread, bar) were explained before; saves that they
+    // were.
+    bool is_hand_explained = false;
+    std::function<void()> remember_hand_explained{};
     // Saves the scene with these settings, view and edits, and returns where; throws LoadError.
     // Empty: saving is not possible.
     std::function<std::string(const SceneState&)> save{};

@@ -6,6 +6,7 @@
 #include "app/run_window.h"
 #include "app/window_session.h"
 #include "app/window_shell.h"
+#include "devices/mouse_lead.h"
 #include "sound/speaker.h"
 #include "ui/add_panel.h"
 #include "ui/question.h"
@@ -37,10 +38,11 @@ struct WindowHand {
     Device* device;
     HandOrders* orders;
     double mouse_reach_m;
-    Vec3 wish_m = Vec3::Zero();    // where mouse or keys want the handle
-    Vec3 handle_m = Vec3::Zero();  // where it is
-    double displacement_gain = 0;  // A_d at this moment
-    double felt_newton = 0;        // sent to the device at this moment
+    MouseLead lead{mouse_reach_m};  // by mouse or keys
+    double felt_newton = 0;         // sent to the device at this moment
+    Vec3 waiting_m = Vec3::Zero();  // handle travel that the molecule has yet to follow
+    bool is_at_wall = false;        // the contact force has stopped the molecule
+    bool is_at_stop = false;        // the handle is at an end of its workspace
     Statistics statistics{servo_tick_s};
 
     bool is_led() const { return orders && mouse_reach_m > 0; }
@@ -100,8 +102,12 @@ private:
     std::size_t by_keys() const { return (led_ + 1) % hands_.size(); }
     const LiveHand& in_hand() const { return frame_.hands[led_]; }
     void exchange_hands();
+    void follow_lead(std::size_t slot);
     void rest(std::size_t slot);
     void rest_all();
+    void engage(std::size_t slot);
+    void clutch(std::size_t slot);
+    void keep_in_sight(double seconds);
     bool can_choose_device() const { return devices_.open && !options_.study; }
     void look_for_devices();
     bool change_device(const std::string& name);
@@ -118,7 +124,10 @@ private:
     void move_hand(const Input& input);
     void move_hand_by_keys(const Input& input, double seconds);
     void pull(std::size_t slot, const glm::vec3& way);
+    Vec3 find_wish(std::size_t slot) const;
     void show_wish();
+    void draw_hand();
+    void explain_hand(double most_newton);
     void perform(Action action);
     void record_or_end();
     void tell_recording_notes();
@@ -195,6 +204,7 @@ private:
     SteadyClock::time_point last_input_ = SteadyClock::now();
     VkExtent2D drawn_size_{};  // of the last picture
     bool holding_ = false;
+    bool is_hand_explained_ = options_.is_hand_explained;  // ring, thread and bar
     SelectionPanel selection_panel_;
     SelectionStatus selection_;
     std::vector<bool> selected_;  // atoms; none: nothing is selected

@@ -52,7 +52,8 @@ bool Sandbox::change_device(const std::string& name) {
     first.device = chosen_.get();
     first.orders = next.orders;
     first.mouse_reach_m = next.mouse_reach_m;
-    first.wish_m = first.handle_m = Vec3::Zero();
+    first.lead = MouseLead(first.mouse_reach_m);
+    first.waiting_m = Vec3::Zero();
     devices_.current = name;
     notice(format_translated("device: {}", first.device->spec().name));
     return true;

@@ -3,6 +3,8 @@
 
 #include "core/translate.h"
 #include "core/units.h"
+#include "render/renderer.h"
+#include "ui/hand_sign.h"
 #include "view/build_frame.h"
 
 #include <fmt/format.h>
@@ -15,7 +17,6 @@ namespace {
 
 constexpr float radians_per_pixel = 0.008F;
 constexpr float zoom_per_notch = 0.9F;
-constexpr double angstrom_per_notch = 0.25;  // of the molecule in hand, towards the eye and away
 // Of what the handle stays behind the mouse: the medium hand's newton is 1.2 Å, and leaves the
 // atom.
 constexpr double thread_angstrom_per_m = 240;
@@ -50,6 +51,9 @@ void Sandbox::take_input() {
     const bool keys_lead = hands_[by_keys()].is_led() && !types() && !is_asked();
     if (keys_lead) move_hand_by_keys(input, std::min(seconds, longest_key_s));
     const bool held_before = std::exchange(holding_, leads && input.is_held(Key::Space));
+    if (holding_ && !held_before) engage(led_);
+    if (!holding_ && held_before) clutch(led_);
+    if (holding_) keep_in_sight(std::min(seconds, longest_key_s));
     window_.capture_cursor(holding_);
     // A drag belongs to what lies where it began, however fast the mouse goes.
     for (const MousePress& press : input.clicked) {
@@ -119,11 +123,10 @@ void Sandbox::heed_device(const Input& input) {
 }
 
 void Sandbox::move_hand(const Input& input) {
-    const float scale = angstrom_per_pixel(camera_, as_float(in_hand().grabbed_angstrom),
-                                           static_cast<float>(window_.size().height));
-    pull(led_, scale * (static_cast<float>(input.mouse_dx) * rightward(camera_) -
-                        static_cast<float>(input.mouse_dy) * upward(camera_)) -
-                   static_cast<float>(input.wheel * angstrom_per_notch) * backward(camera_));
+    pull(led_, find_mouse_way(camera_, as_float(in_hand().grabbed_angstrom),
+                              static_cast<float>(window_.size().height),
+                              static_cast<float>(input.mouse_dx),
+                              static_cast<float>(input.mouse_dy), static_cast<float>(input.wheel)));
 }
 
 void Sandbox::move_hand_by_keys(const Input& input, double seconds) {
@@ -134,26 +137,38 @@ void Sandbox::move_hand_by_keys(const Input& input, double seconds) {
                           along(Key::Up, Key::Down) * upward(camera_) -
                           along(Key::PageUp, Key::PageDown) * backward(camera_);
     if (way == glm::vec3(0)) return;
+    engage(by_keys());
     pull(by_keys(),
          static_cast<float>(key_angstrom_per_s * (input.shift ? slow_key : 1) * seconds) * way);
 }
 
 // The molecule would go this way (Å) where nothing holds it: handle travel is A_d times its way.
 void Sandbox::pull(std::size_t slot, const glm::vec3& way) {
-    WindowHand& pulling = hands_[slot];
-    pulling.wish_m +=
-        Vec3(way.x, way.y, way.z) * units::metre_per_angstrom * pulling.displacement_gain;
-    // Never further ahead than the hand pulls: so that coming back is felt at once.
-    const Vec3 ahead = pulling.wish_m - pulling.handle_m;
-    if (ahead.norm() > pulling.mouse_reach_m)
-        pulling.wish_m = pulling.handle_m + ahead * (pulling.mouse_reach_m / ahead.norm());
-    session_.move_hand(pulling.wish_m, slot);
+    hands_[slot].lead.pull({way.x, way.y, way.z});
+    follow_lead(slot);
+}
+
+void Sandbox::follow_lead(std::size_t slot) {
+    const MouseLead& lead = hands_[slot].lead;
+    if (hands_[slot].is_led()) session_.move_hand(lead.target_m(), slot, lead.is_clutched());
 }
 
 // A hand that mouse or keys lead stays where its handle is: it pulls at nothing.
 void Sandbox::rest(std::size_t slot) {
-    WindowHand& resting = hands_[slot];
-    if (resting.is_led()) session_.move_hand(resting.wish_m = resting.handle_m, slot);
+    hands_[slot].lead.rest();
+    follow_lead(slot);
+}
+
+// The hand takes hold of the molecule where the handle is.
+void Sandbox::engage(std::size_t slot) {
+    hands_[slot].lead.engage();
+    follow_lead(slot);
+}
+
+// The molecule stays where it is, and the handle goes back to its middle.
+void Sandbox::clutch(std::size_t slot) {
+    hands_[slot].lead.clutch();
+    follow_lead(slot);
 }
 
 void Sandbox::rest_all() {
@@ -171,15 +186,79 @@ void Sandbox::exchange_hands() {
                              held_address_.empty() ? translated("empty") : held_address_));
 }
 
+// Moves the camera so that panels never cover what the hand leads.
+void Sandbox::keep_in_sight(double seconds) {
+    constexpr float margin = 0.15F;  // of the area without panels
+    constexpr double catches_up_s = 0.15;
+    const LiveHand& led = frame_.hands[led_];
+    const VkExtent2D size = shell_.graphics()->swapchain.size();
+    if (!has_frame_ || led.held.count == 0 || size.width == 0 || size.height == 0) return;
+    const glm::vec3 seen =
+        project(shown_.camera, as_float(led.grabbed_angstrom), size.width, size.height);
+    if (!(seen.z > shown_.camera.near)) return;
+    const ScreenArea area = free_area();
+    if (area.width() <= 0 || area.height() <= 0) return;
+    const auto beyond = [](float at, float low, float high) {
+        const float edge = margin * (high - low);
+        return at - std::clamp(at, low + edge, high - edge);
+    };
+    const auto share = static_cast<float>(1 - std::exp(-seconds / catches_up_s));
+    const float right = beyond(seen.x, area.left, area.right);
+    const float down = beyond(seen.y, area.top, area.bottom);
+    if (right == 0 && down == 0) return;
+    take_camera();
+    pan(camera_, -share * right, -share * down, static_cast<float>(size.height));
+}
+
+// Where the hand wants what it holds, Å: by what mouse or keys are ahead of the handle, and by the
+// travel that waits.
+Vec3 Sandbox::find_wish(std::size_t slot) const {
+    const WindowHand& hand = hands_[slot];
+    Vec3 wish = frame_.hands[slot].grabbed_angstrom;
+    if (hand.is_led()) wish += thread_angstrom_per_m * hand.lead.ahead_m();
+    if (const double A_d = hand.lead.displacement_gain(); A_d > 0)
+        wish += units::angstrom_per_metre / A_d * hand.waiting_m;
+    return wish;
+}
+
 // A study shows nothing of it.
 void Sandbox::show_wish() {
     if (options_.study) return;
     for (std::size_t slot = 0; slot < hands_.size(); ++slot) {
-        const auto& [held, place, address, contact] = frame_.hands[slot];
-        if (!hands_[slot].is_led() || held.count == 0) continue;
-        const Vec3 ahead = hands_[slot].wish_m - hands_[slot].handle_m;
-        add_wish(as_float(place), as_float(place + thread_angstrom_per_m * ahead),
+        if (frame_.hands[slot].held.count == 0) continue;
+        add_wish(as_float(frame_.hands[slot].grabbed_angstrom), as_float(find_wish(slot)),
                  backward(camera_), shown_);
+    }
+}
+
+// The first time that the signs of the hand appear to a user.
+void Sandbox::explain_hand(double most_newton) {
+    if (std::exchange(is_hand_explained_, true)) return;
+    notice(format_translated("Ring: where your hand wants the molecule. Dashed thread: how far it "
+                             "stays behind. Bar: the force on your hand, full at {:.3g} N.",
+                             most_newton),
+           first_notice_s);
+    if (options_.remember_hand_explained) options_.remember_hand_explained();
+}
+
+// The force on each hand, and why its molecule does not follow, beside the ring.
+void Sandbox::draw_hand() {
+    constexpr double least_waiting_m = 0.002, faintest_newton = 0.02;
+    for (std::size_t slot = 0; slot < hands_.size(); ++slot) {
+        const WindowHand& hand = hands_[slot];
+        if (frame_.hands[slot].held.count == 0) continue;
+        HandSign sign{as_float(find_wish(slot)), hand.felt_newton,
+                      overlay_.settings().coupling.clamp_N};
+        if (hand.is_at_stop) {
+            sign.reason = translated("handle's end");
+        } else if (hand.is_at_wall) {
+            sign.reason = translated("at wall");
+        } else if (hand.waiting_m.norm() > least_waiting_m) {
+            sign.reason = translated("molecule waits");
+        }
+        if (sign.reason.empty() && sign.newton < faintest_newton) continue;
+        explain_hand(sign.most_newton);
+        draw_hand_sign(sign, shown_.camera, free_area());
     }
 }
 

@@ -7,6 +7,7 @@
 #include "haptics/servo.h"
 #include "session/commands.h"
 #include "session/trajectory_recorder.h"
+#include "session/unbinding_path.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -38,8 +39,11 @@ public:
 
     virtual ServoHealth servo_health() const noexcept { return {}; }
 
-    // Where a live hand wants the handle, m.
-    virtual void move_hand(const Vec3& /*target_m*/, std::size_t /*slot*/) {}
+    // Where a live hand wants the handle, m, and whether it presses the clutch.
+    virtual void move_hand(const Vec3& /*target_m*/, std::size_t /*slot*/, bool /*is_clutched*/) {}
+
+    // The path of what the first hand holds, where molecules move by themselves.
+    virtual std::optional<UnbindingPath> find_unbinding() { return {}; }
 
     // Puts another device in a hand's place; the one before is the caller's again. Throws
     // LoadError, and changes nothing, where that one cannot be run here.

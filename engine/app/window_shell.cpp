@@ -82,11 +82,29 @@ void clear(VkCommandBuffer commands, VkImage image) {
 
 }  // namespace
 
+namespace {
+
+// Opens the device on a thread of low priority, which the driver's threads inherit: those of a
+// software driver draw behind servo, steps and renewals of the model.
+std::unique_ptr<GpuDevice> open_device(const Window& window, bool validation) {
+    const GpuOptions options{.validation = validation,
+                             .instance_extensions = window.vulkan_extensions(),
+                             .create_surface = [&window](VkInstance instance) {
+                                 return window.create_surface(instance);
+                             }};
+    return std::async(std::launch::async,
+                      [&options] {
+                          lower_priority();
+                          return std::make_unique<GpuDevice>(options);
+                      })
+        .get();
+}
+
+}  // namespace
+
 Graphics::Graphics(const Window& window, bool validation, double text_scale)
-    : device({.validation = validation,
-              .instance_extensions = window.vulkan_extensions(),
-              .create_surface =
-                  [&window](VkInstance instance) { return window.create_surface(instance); }}),
+    : owned_device(open_device(window, validation)),
+      device(*owned_device),
       swapchain(device, window.size()),
       renderer(device),
       ui(window, device, swapchain.overlay_pass(), swapchain.image_count(),
@@ -98,8 +116,6 @@ WindowShell::WindowShell(const ShellOptions& options)
       window_(options.title, options.width, options.height) {
     (void)choose_language(options.language.code);
     if (options.grows) window_.grow_with_display();
-    // Drawing, which may be done by threads of the driver, comes after feeling.
-    lower_priority();
     restart_graphics();
 }
 

@@ -48,7 +48,8 @@ struct ShellOptions {
 struct Graphics {
     Graphics(const Window& window, bool validation, double text_scale);
 
-    GpuDevice device;
+    std::unique_ptr<GpuDevice> owned_device;
+    GpuDevice& device;
     Swapchain swapchain;
     Renderer renderer;
     UiBackend ui;

@@ -19,7 +19,7 @@ struct FileVersion {
 // What this program writes. Files without a number are of version 1, which is read too.
 // Scene: scene.toml, its key `format`. Recording: columns of trace.csv and keys of summary.json,
 // the number is in session.toml. Journal: journal.txt.
-inline constexpr FileVersion scene_version{2, 0}, recording_version{2, 0}, journal_version{2, 0};
+inline constexpr FileVersion scene_version{2, 0}, recording_version{2, 1}, journal_version{2, 1};
 inline constexpr FileVersion unnumbered_version{1, 0};
 
 // "2.0".

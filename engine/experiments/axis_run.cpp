@@ -87,7 +87,7 @@ AxisRun play_axis(const AxisCase& c) {
     EmulatedOmniSettings device = build_emulated_omni(scene, world);
     if (c.hand) device.hand = c.hand;
     EmulatedOmni omni(device);
-    ServoSettings servo = build_servo_settings(scene, world, device.half_workspace_m);
+    ServoSettings servo = build_servo_settings(scene, world, omni.spec());
     if (c.cools) servo.safety.thermal_limit_newton = std::numeric_limits<double>::infinity();
     Watch watch(world, servo);
     const auto step = [&](const HandPose& hand, const ContactModel& felt) {

@@ -66,8 +66,8 @@ std::vector<std::string> draw_closed_path(Draws& draws, bool turn, bool& in_plan
 // Takes every tick of a path.
 class ClosedPathWatch {
 public:
-    ClosedPathWatch(const SceneDescription& scene, const World& world, const Vec3& workspace)
-        : servo_(build_servo_settings(scene, world, workspace)),
+    ClosedPathWatch(const SceneDescription& scene, const World& world, const DeviceSpec& device)
+        : servo_(build_servo_settings(scene, world, device)),
           cap_N_per_m_(servo_.guarded.value_or(GuardedSettings{}).cap_N_per_m),
           law_(servo_.guarded.value_or(GuardedSettings{}), load_world(scene)),
           start_(law_.pose().place_angstrom),
@@ -199,7 +199,7 @@ ClosedPathResult play_closed_path(const ClosedPathOptions& options, std::size_t 
     const SceneDescription scene = read_scene(options.scene, settings);
     World world = load_world(scene);
     EmulatedOmni device(build_emulated_omni(scene, world));
-    ClosedPathWatch watch(scene, world, device.spec().half_workspace_m);
+    ClosedPathWatch watch(scene, world, device.spec());
     const Summary summary = run_headless(scene, world, device, {}, nullptr, {}, {},
                                          [&](const ServoTick& tick) { watch.add(tick); });
     ClosedPathResult result = watch.take();

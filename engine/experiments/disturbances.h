@@ -34,7 +34,9 @@ public:
     const DeviceSpec& spec() const noexcept override { return device_.spec(); }
     DeviceReading read() noexcept override;
     void write(const Vec3& force_newton) noexcept override;
-    void show(const ContactModel& contact) noexcept override { device_.show(contact); }
+    void show(const ContactModel& contact, const Vec3& waiting_m) noexcept override {
+        device_.show(contact, waiting_m);
+    }
 
     double work_J() const noexcept { return work_J_; }  // on the hand, up to the last reading
     // Infinite where one was not finite.

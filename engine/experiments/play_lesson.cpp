@@ -1,8 +1,12 @@
 #include "experiments/play_lesson.h"
 
 #include "core/draws.h"
+#include "core/units.h"
+#include "devices/emulated_hand.h"
 #include "devices/emulated_omni.h"
+#include "devices/mouse_handle.h"
 #include "experiments/emulated_hand.h"
+#include "experiments/mouse_person.h"
 #include "session/edit_player.h"
 #include "session/lesson.h"
 #include "session/lesson_meter.h"
@@ -18,6 +22,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -57,17 +63,102 @@ double find_lack(const LessonStepDescription& step, double value) {
                      step.at_most ? value - *step.at_most : 0, 0.0});
 }
 
+// A hand on a device, which leads the molecule along paths.
+class LessonHand {
+public:
+    LessonHand() = default;
+    LessonHand(const LessonHand&) = delete;
+    LessonHand& operator=(const LessonHand&) = delete;
+    virtual ~LessonHand() = default;
+
+    virtual Device& device() noexcept = 0;
+    // Goes on along this path, from where it is, or from where it takes hold of another molecule.
+    virtual void go_on(const std::vector<HandWaypoint>& path, bool takes_anew) = 0;
+    virtual void see(const ServoTick& /*tick*/) {}
+};
+
+class OmniHand final : public LessonHand {
+public:
+    explicit OmniHand(const EmulatedOmniSettings& settings) : omni_(settings) {}
+
+    Device& device() noexcept override { return omni_; }
+    void go_on(const std::vector<HandWaypoint>& path, bool takes_anew) override {
+        omni_.go_on(path, takes_anew);
+    }
+
+private:
+    EmulatedOmni omni_;
+};
+
+// A person at a mouse, for whom the path is a goal in the picture that waits for the molecule.
+class MouseHand final : public LessonHand {
+public:
+    MouseHand(const EmulatedOmniSettings& settings, std::uint64_t seed)
+        : mouse_(settings_of(settings, orders_)), person_(mouse_reach_m(settings), orders_, seed) {}
+
+    Device& device() noexcept override { return mouse_; }
+    void go_on(const std::vector<HandWaypoint>& path, bool takes_anew) override {
+        const Vec3 now = takes_anew ? Vec3::Zero() : find_target(path_, time_s_).place_m;
+        if (takes_anew) start_.reset();
+        path_ = {{time_s_, now.x(), now.y(), now.z()}};
+        for (HandWaypoint point : path) {
+            point.time_s += time_s_;
+            if (point.time_s > path_.back().time_s) path_.push_back(point);
+        }
+    }
+    void see(const ServoTick& tick) override {
+        constexpr double waits_from_angstrom = 1;
+        const MoleculePose& molecule = tick.contact.molecule;
+        if (tick.contact.is_still) return;
+        if (!start_ || *start_ != tick.contact.start) first_angstrom_ = molecule.place_angstrom;
+        start_ = tick.contact.start;
+        const auto goal = [&]() -> Vec3 {
+            return first_angstrom_ +
+                   units::angstrom_per_metre * find_target(path_, time_s_).place_m;
+        };
+        if ((goal() - molecule.place_angstrom).norm() < waits_from_angstrom)
+            time_s_ += servo_tick_s;
+        person_.see(tick, goal());
+    }
+
+private:
+    static MouseHandleSettings settings_of(const EmulatedOmniSettings& omni, HandOrders& orders) {
+        MouseHandleSettings settings = mouse_handle_of(omni.hand);
+        settings.delay_ticks = omni.servo_delay_ticks;
+        settings.orders = &orders;
+        return settings;
+    }
+
+    HandOrders orders_;
+    MouseHandle mouse_;
+    MousePersonAtWindow person_;
+    std::vector<HandWaypoint> path_{{}};
+    double time_s_ = 0;                   // on the path
+    std::optional<std::uint32_t> start_;  // of the contact model when it took hold
+    Vec3 first_angstrom_ = Vec3::Zero();  // place of the molecule then
+};
+
+std::unique_ptr<LessonHand> open_hand(const SceneDescription& scene, const World& world,
+                                      LessonDevice device, std::uint64_t seed) {
+    EmulatedOmniSettings settings = build_emulated_omni(scene, world);
+    if (device == LessonDevice::Mouse) return std::make_unique<MouseHand>(settings, seed);
+    constexpr double small_m = 0.05;
+    if (device == LessonDevice::Small) settings.half_workspace_m.setConstant(0.5 * small_m);
+    return std::make_unique<OmniHand>(settings);
+}
+
 class LessonPlay {
 public:
-    LessonPlay(const SceneDescription& scene, LessonPlayer player)
+    LessonPlay(const SceneDescription& scene, LessonPlayer player, LessonDevice device,
+               std::uint64_t seed)
         : scene_(scene),
           player_(player),
           world_(load_world(scene)),
-          device_(build_emulated_omni(scene, world_)),
+          hand_(open_hand(scene, world_, device, seed)),
           lesson_(scene.lesson),
           meter_(scene, world_),
           edits_(scene),
-          hands_{{device_, build_servo_settings(scene, world_, device_.spec()),
+          hands_{{hand_->device(), build_servo_settings(scene, world_, hand_->device().spec()),
                   local_contact_of(world_)}} {
         result_.steps.resize(scene.lesson.size());
     }
@@ -85,6 +176,8 @@ public:
         };
         const auto on_ticks = [&](std::span<const ServoTick> now) {
             const std::size_t before = lesson_.current();
+            hand_->see(now.front());
+            statistics_.add(now.front());
             note(now.front());
             if (progress && lesson_.current() != before)
                 progress(static_cast<double>(lesson_.current()) /
@@ -93,6 +186,7 @@ public:
         run_lockstep({ticks, ticks_per_step}, hands_, step, on_ticks,
                      [&] { return lesson_.is_done(); });
         result_.seconds = static_cast<double>(ticks_) * servo_tick_s;
+        result_.travel = statistics_.summary().travel;
         return result_;
     }
 
@@ -138,14 +232,14 @@ private:
         if (!step.operator_take.empty()) apply(TakeEdit{step.operator_take}, ".operator_take");
         if (!step.operator_coupling.empty())
             apply(CouplingEdit{step.operator_coupling}, ".operator_coupling");
-        device_.go_on(plan_lead(step.operator_path), !step.operator_take.empty());
+        hand_->go_on(plan_lead(step.operator_path), !step.operator_take.empty());
         return !step.operator_take.empty() || !step.operator_coupling.empty();
     }
 
     const SceneDescription& scene_;
     LessonPlayer player_;
     World world_;
-    EmulatedOmni device_;
+    std::unique_ptr<LessonHand> hand_;
     Lesson lesson_;
     LessonMeter meter_;
     EditPlayer edits_;
@@ -153,6 +247,7 @@ private:
     std::vector<LockstepHand> hands_;
     std::uint64_t ticks_ = 0;
     bool has_begun_ = false;  // the present step
+    Statistics statistics_{servo_tick_s};
     LessonResult result_;
 };
 
@@ -171,11 +266,11 @@ double lesson_seconds(const SceneDescription& scene) noexcept {
     return seconds;
 }
 
-LessonResult play_lesson(SceneDescription scene, LessonPlayer player, std::uint64_t seed,
-                         const std::function<void(double)>& progress) {
+LessonResult play_lesson(SceneDescription scene, LessonPlayer player, LessonDevice device,
+                         std::uint64_t seed, const std::function<void(double)>& progress) {
     scene.hand = hand_of(scene, player, seed);
     scene.second.reset();
-    LessonPlay play(scene, player);
+    LessonPlay play(scene, player, device, seed);
     return play.run(progress);
 }
 

@@ -200,7 +200,7 @@ UnbindingResult play_unbinding(const UnbindingOptions& options, std::vector<std:
     const SceneDescription scene = read_unbinding(options, settings);
     World world = load_world(scene);
     EmulatedOmni device(build_emulated_omni(scene, world));
-    UnbindingWatch watch(build_servo_settings(scene, world, device.spec().half_workspace_m), world);
+    UnbindingWatch watch(build_servo_settings(scene, world, device.spec()), world);
     const auto begin = std::chrono::steady_clock::now();
     const Summary summary = run_headless(
         scene, world, device, {}, nullptr, {}, {}, [&](const ServoTick& tick) { watch.add(tick); },

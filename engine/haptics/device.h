@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -18,11 +19,15 @@ inline constexpr double servo_tick_s = 1 / servo_rate_hz;
 // Limits as the maker or the driver states them. SI; axes: x right, y up, z towards the user.
 struct DeviceSpec {
     std::string name;
-    double rate_hz = servo_rate_hz;        // servo ticks per second
-    double peak_force_newton = 0;          // peak force of the motors
-    double continuous_force_newton = 0;    // continuous force of the motors; 0 if unknown
-    double viscosity_N_s_per_m = 0;        // damping of the device itself; 0 if unknown
-    Vec3 half_workspace_m = Vec3::Zero();  // half size of the box in which the handle can move
+    double rate_hz = servo_rate_hz;      // servo ticks per second
+    double peak_force_newton = 0;        // peak force of the motors
+    double continuous_force_newton = 0;  // continuous force of the motors; 0 if unknown
+    double viscosity_N_s_per_m = 0;      // damping of the device itself; 0 if unknown
+    // The largest stiffness that guarded coupling may let the hand feel, if the device states it,
+    // N/m; 0: found from the viscosity (haptics/guarded.h).
+    double cap_N_per_m = 0;
+    // Half size of the box in which the handle can move; 0 along an axis without an end.
+    Vec3 half_workspace_m = Vec3::Zero();
     // False for devices that cannot hurt anybody: emulated, or moved by a mouse. The full safety
     // chain guards every real device in every mode.
     bool is_real = true;
@@ -43,12 +48,25 @@ struct DeviceReading {
     bool valid = false;
     Quat orientation = Quat::Identity();  // orientation of the handle, if the device senses it
     DeviceTrouble trouble = DeviceTrouble::None;
+    // Whether the handle is at an end of its workspace, if the device knows; see is_at_stop.
+    std::optional<bool> at_stop = {};
 };
 
 // Whether the reading is valid and all values are finite.
 inline bool is_sane(const DeviceReading& reading) noexcept {
     return reading.valid && std::isfinite(reading.time_s) && reading.position_m.allFinite() &&
            reading.orientation.coeffs().allFinite();
+}
+
+// Whether the handle is at an end of its workspace: as the device says, else within a millimetre.
+inline bool is_at_stop(const DeviceReading& reading, const Vec3& half_workspace_m) noexcept {
+    constexpr double near_m = 0.001;
+    if (reading.at_stop || !is_sane(reading)) return reading.at_stop.value_or(false);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+        const double half_m = half_workspace_m(i);
+        if (half_m > 0 && std::abs(reading.position_m(i)) >= half_m - near_m) return true;
+    }
+    return false;
 }
 
 enum class Button : std::uint32_t { Clutch = 1 };
@@ -78,8 +96,9 @@ public:
     // on the servo's clock and advances by one tick here.
     virtual void write(const Vec3& force_newton) noexcept = 0;
 
-    // Passes the present contact model for display, every tick before write().
-    virtual void show(const ContactModel& /*contact*/) noexcept {}
+    // Passes what the person sees, every tick before write(): the present contact model, and the
+    // handle travel (m) that the molecule has yet to follow.
+    virtual void show(const ContactModel& /*contact*/, const Vec3& /*waiting_m*/) noexcept {}
 
     // What the person must know or do for the device to work, as one sentence with static lifetime;
     // empty if all is well. From any thread.

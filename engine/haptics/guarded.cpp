@@ -26,6 +26,12 @@ constexpr double law_glide_s = 0.1;
 // no tick changes the force at the handle by more than this because of it.
 constexpr double relaxed_blend_s = 0.03, most_blended_newton = 0.03;
 
+// `way`, but no longer than that.
+Vec3 shortened(const Vec3& way, double longest) noexcept {
+    const double length = way.norm();
+    return length > longest ? Vec3(way * (longest / length)) : way;
+}
+
 // What the molecule is in: the newest contact model, and where other hands have theirs.
 struct Surroundings {
     const LocalContactModel& contact;
@@ -69,6 +75,17 @@ double find_reach(const LocalContactModel& contact, const Vec3& way,
     const double back = -gone.dot(way) / length;
     const double square = back * back + reach * reach - gone.squaredNorm();
     return std::max(0.0, back + std::sqrt(std::max(0.0, square)));
+}
+
+// The stiffness by which a step of the molecule changes the force: the relaxed one within the
+// region in which the contact model holds, beyond it the frozen one.
+const Mat3& find_felt_stiffness(const ContactModel& model, const GuardedState& state) noexcept {
+    constexpr double rounding = 1e-6;  // Å: a molecule that waits stands at the edge
+    if (!model.relaxed) return state.at_place.stiffness_N_per_m;
+    const Vec3 gone = state.molecule.place_angstrom - model.molecule.place_angstrom +
+                      model.relaxed->gone_angstrom;
+    const bool is_within = gone.norm() <= model.relaxed->reach_angstrom + rounding;
+    return is_within ? state.at_place.slope_N_per_m : state.at_place.stiffness_N_per_m;
 }
 
 // Where limits cut off travel the force still acts on the handle, and what it does there comes from
@@ -222,12 +239,12 @@ double find_blend_work(const GuardedSettings& settings, const Vec3& moved_m,
 // The gain of a step that has led to where another one holds: of where it is stiffer that of there,
 // since no more than the cap may be felt; else of halfway.
 std::optional<GuardedGain> find_better_gain(const GuardedSettings& settings,
-                                            const GuardedGain& gain,
+                                            const ContactModel& model, const GuardedGain& gain,
                                             const GuardedState& state) noexcept {
     constexpr double much = 1.05;
     GuardedGain there =
         guarded_gain(settings, state.at_place.force_newton + state.blend_residual_newton,
-                     state.at_place.stiffness_N_per_m);
+                     state.at_place.stiffness_N_per_m, find_felt_stiffness(model, state));
     if (there.A_d > much * gain.A_d) return there;
     if (there.A_d * much > gain.A_d || !there.tensor.allFinite()) return std::nullopt;
     const double least = gain.felt_N_per_m / (most_of_cap * settings.cap_N_per_m);
@@ -240,6 +257,17 @@ std::optional<GuardedGain> find_better_gain(const GuardedSettings& settings,
     halfway.inverse /= share;
     halfway.felt /= share;
     return halfway;
+}
+
+// Keeps the travel that the molecule did not follow, where everything follows the hand: up to the
+// travel that presses against the stop as overtravel, the rest as waiting travel. Returns what is
+// clipped.
+Vec3 keep_travel(const Vec3& held, const Vec3& cut, const Vec3& pressing,
+                 GuardedState& state) noexcept {
+    state.overtravel_m = shortened(held, pressing.norm());
+    const Vec3 waiting = held + cut - state.overtravel_m;
+    state.waiting_m = shortened(waiting, most_waiting_m);
+    return waiting - state.waiting_m;
 }
 
 // Clutched, a hand has no hold of the molecule and feels none: what pulled at the handle while it
@@ -269,6 +297,12 @@ double guarded_cap(double viscosity_N_s_per_m, double damping_N_s_per_m, int del
     return std::max(1.0, std::min(stable, lossless));
 }
 
+double guarded_cap(const DeviceSpec& device, double damping_N_s_per_m, int delay_ticks) noexcept {
+    return device.cap_N_per_m > 0
+               ? device.cap_N_per_m
+               : guarded_cap(device.viscosity_N_s_per_m, damping_N_s_per_m, delay_ticks);
+}
+
 double guarded_damping(double damping_N_s_per_m, double inertia_kg, int delay_ticks) noexcept {
     return std::min(damping_N_s_per_m, most_damping(inertia_kg, delay_ticks));
 }
@@ -280,20 +314,25 @@ double guarded_horizon(double cap_N_per_m, double damping_N_s_per_m, double iner
 }
 
 GuardedGain guarded_gain(const GuardedSettings& settings, const Vec3& force_newton,
-                         const Mat3& stiffness) noexcept {
+                         const Mat3& stiffness, const Mat3& felt_stiffness) noexcept {
     double law = displacement_gain(settings.displacement_law, force_newton.norm(),
                                    std::abs(extreme_stiffness(stiffness)));
     if (settings.least_A_d_per_newton > 0) {
         const double felt_newton = hand_force(settings.force_law, force_newton).norm();
         law = std::max(law, settings.least_A_d_per_newton * felt_newton);
     }
-    const Mat3 felt = force_jacobian(settings.force_law, force_newton) * stiffness;
+    const Mat3 felt = force_jacobian(settings.force_law, force_newton) * felt_stiffness;
     if (settings.gain_shape == GainShape::Tensor && felt.allFinite())
         return tensor_gain(law, felt, settings.cap_N_per_m);
     const double largest = largest_felt(felt);
     const double A_d = capped_gain(law, largest, settings.cap_N_per_m);
     return {A_d,        largest / A_d, A_d * Mat3::Identity(), 1 / A_d * Mat3::Identity(),
             felt / A_d, A_d / law};
+}
+
+GuardedGain guarded_gain(const GuardedSettings& settings, const Vec3& force_newton,
+                         const Mat3& stiffness) noexcept {
+    return guarded_gain(settings, force_newton, stiffness, stiffness);
 }
 
 Vec3 filtered_velocity(const Vec3& before_m_per_s, const Vec3& moved_m) noexcept {
@@ -314,6 +353,7 @@ void take_local_contact(const LocalContactModel& contact, GuardedState& state,
     if (!goes_on) {
         state.molecule = model.molecule;
         state.overtravel_m.setZero();
+        state.waiting_m.setZero();
         state.stepped_m.setZero();
         state.holds_another = state.is_placed && state.start != model.start && !model.is_still;
         if (!state.holds_another) state.felt_newton.setZero();
@@ -344,14 +384,15 @@ GuardedTick step_guarded(const GuardedSettings& settings, const LocalContactMode
     // Other hands have moved since.
     if (!contact.field.held.empty()) state.at_place = around.at(state.molecule);
     const Vec3 before = state.at_place.force_newton + state.blend_residual_newton;
-    const Mat3& stiffness = state.at_place.stiffness_N_per_m;
-    GuardedGain gain = guarded_gain(settings, before, stiffness);
+    GuardedGain gain = guarded_gain(settings, before, state.at_place.stiffness_N_per_m,
+                                    find_felt_stiffness(model, state));
     Vec3 own = Vec3::Zero(), extra = Vec3::Zero();
     if (!is_clutched) {
         extra = model.projector * find_extra_travel(settings, handle_m, moved_m, state);
         own = model.projector * (handle.followed * moved_m) + extra;
     }
-    const Vec3 wanted = own + state.overtravel_m;
+    const Vec3 pressing = own + state.overtravel_m, waiting = state.waiting_m;
+    const Vec3 wanted = pressing + waiting;
     const bool turns = model.turns_with_handle && !is_clutched;
     const HandleStep asked{wanted, turns ? handle.turned : Quat::Identity()};
     const double most = update_allowance(contact, state);
@@ -360,7 +401,7 @@ GuardedTick step_guarded(const GuardedSettings& settings, const LocalContactMode
     const MoleculePose from = state.molecule;
     const LocalForce at_from = state.at_place;
     Followed done = follow_handle(settings, around, gain, asked, remainder, most, state);
-    if (const std::optional<GuardedGain> better = find_better_gain(settings, gain, state)) {
+    if (const std::optional<GuardedGain> better = find_better_gain(settings, model, gain, state)) {
         state.molecule = from;
         state.at_place = at_from;
         gain = *better;
@@ -371,13 +412,18 @@ GuardedTick step_guarded(const GuardedSettings& settings, const LocalContactMode
     tick.cap_ratio = gain.cap_ratio;
     tick.felt_N_per_m = gain.felt_N_per_m;
     tick.molecule_per_handle = gain.inverse;
-    // What the stop held back is kept; what the limits cut off is not, but for what was kept.
+    // What the stop held back is kept; what the limits cut off is not, but for what was kept, and
+    // where the molecule waits for its contact model.
     const Vec3 cut = (1 - share) * wanted;
-    const double overtravel_norm = state.overtravel_m.norm(), cut_norm = cut.norm();
-    const Vec3 kept_cut =
-        cut_norm > overtravel_norm ? Vec3(cut * (overtravel_norm / cut_norm)) : cut;
+    const Vec3 kept_cut = shortened(cut, state.overtravel_m.norm());
+    const Vec3 held = share * wanted - followed + kept_cut;
     tick.clipped_m = cut - kept_cut;
-    state.overtravel_m = share * wanted - followed + kept_cut;
+    if (model.relaxed) {
+        tick.clipped_m = keep_travel(held, tick.clipped_m, pressing, state);
+    } else {
+        state.overtravel_m = held;
+        state.waiting_m.setZero();
+    }
     const bool is_whole = followed == wanted;
     state.stepped_m = is_whole ? wanted : Vec3(Vec3::Zero());
     state.began_with = began_with;
@@ -404,10 +450,12 @@ GuardedTick step_guarded(const GuardedSettings& settings, const LocalContactMode
     state.allowed_m = remember * state.allowed_m + share * wanted.norm();
     tick.damping_newton = -settings.damping_N_s_per_m * state.handle_m_per_s;
     update_hold(is_clutched, state);
-    state.felt_newton =
-        passivity_scaling(state) * state.law_newton - settings.cap_N_per_m * state.overtravel_m;
+    state.felt_newton = passivity_scaling(state) * state.law_newton -
+                        settings.cap_N_per_m * state.overtravel_m -
+                        waiting_N_per_m * state.waiting_m;
     tick.hand_newton = state.clutch_blend * state.felt_newton + tick.damping_newton;
-    double from_nothing_J = state.law_newton.dot(tick.clipped_m - extra);
+    double from_nothing_J =
+        state.law_newton.dot(tick.clipped_m + state.waiting_m - waiting - extra);
     if (model.relaxed)
         from_nothing_J += state.clutch_blend * find_blend_work(settings, moved_m, state);
     update_energy_balance(settings, from_nothing_J, state);

@@ -20,6 +20,7 @@ struct GuardedSettings {
     // The stiffness cap, N/m: A_d is raised until the stiffness felt is below it. Default: half of
     // the stability limit of a device with this damping, 0.5 (B_h + B)/(1.5 T).
     double cap_N_per_m = 200;
+    double device_cap_N_per_m = 200;  // the device's own, of which `cap_N_per_m` is a part
     // A_d is no less than this much for each newton that is felt: where the law is steep, a
     // molecule that is far from any wall would else go further in a tick than the limits of a step
     // let it.
@@ -36,6 +37,8 @@ struct GuardedSettings {
 // tick of delay beyond the first; and no more than so that the damping takes what a force that is
 // half a tick, one of holding and the delay late gives, B/((1.5 + delay) T). At least 1.
 double guarded_cap(double viscosity_N_s_per_m, double damping_N_s_per_m, int delay_ticks) noexcept;
+// The same for a device: what it states, or from its viscosity.
+double guarded_cap(const DeviceSpec& device, double damping_N_s_per_m, int delay_ticks) noexcept;
 
 // What of a damping (N s/m) is played: late by its filter and the servo's delay it shakes a light
 // handle by itself from pi/2 m/delay on, and a third of that is the most.
@@ -51,6 +54,12 @@ double guarded_horizon(double cap_N_per_m, double damping_N_s_per_m, double iner
 // ends, or the molecule would drift, and where the tick begins more is felt than the cap.
 inline constexpr double most_of_cap = 1.1;
 
+// While the molecule waits for its contact model, the handle's travel is kept and pulls back as a
+// spring of this stiffness, weak enough that the force of the molecule is still told from it.
+// Travel beyond its largest force is clipped.
+inline constexpr double waiting_N_per_m = 15, most_waiting_newton = 0.3;
+inline constexpr double most_waiting_m = most_waiting_newton / waiting_N_per_m;
+
 struct GuardedGain {
     double A_d = 0;           // handle metres per molecule metre, where it is largest
     double felt_N_per_m = 0;  // of the stiffness, where it is largest
@@ -60,9 +69,13 @@ struct GuardedGain {
     double cap_ratio = 1;      // largest A_d divided by that of the law (cap ratio)
 };
 
-// Where the molecule feels this force (N) and stiffness (N/m): the law's A_d, raised until the cap
-// holds; as a tensor along each eigenvector of sym(J K) by what that one needs, J the Jacobian of
-// the force law and K the stiffness.
+// Where the molecule feels this force (N): the law's A_d, raised until the cap holds; as a tensor
+// along each eigenvector of sym(J K) by what that one needs, J the Jacobian of the force law and K
+// the stiffness that is felt (N/m). `stiffness`: of the frozen surroundings, for the law's own
+// term.
+GuardedGain guarded_gain(const GuardedSettings& settings, const Vec3& force_newton,
+                         const Mat3& stiffness, const Mat3& felt_stiffness) noexcept;
+// The same where the frozen stiffness is felt.
 GuardedGain guarded_gain(const GuardedSettings& settings, const Vec3& force_newton,
                          const Mat3& stiffness) noexcept;
 
@@ -73,6 +86,9 @@ struct GuardedState {
     MoleculePose molecule;
     Vec3 overtravel_m =
         Vec3::Zero();  // handle travel that the stop did not let the molecule follow
+    // Handle travel that the molecule will follow once its contact model is there, at most
+    // `most_waiting_m`; only where everything follows the hand.
+    Vec3 waiting_m = Vec3::Zero();
     LocalForce at_place;
     double allowance_angstrom = 0;  // distance that it may move at once
     // The last step, if it was followed whole: handle travel, and molecule per handle travel as it

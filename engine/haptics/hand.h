@@ -70,9 +70,11 @@ struct HandScript {
 // reads.
 struct HandOrder {
     Vec3 target_m = Vec3::Zero();  // target of the handle
-    std::uint32_t restarts = 0;    // a new number restarts the script, or lets a live hand rest
-    bool frozen = false;           // stops time for handle and hand
-    std::uint32_t grants = 0;      // a new number lets `granted_ticks` pass while frozen
+    // Presses the clutch: the hand carries the handle back to the middle without the molecule.
+    bool is_clutched = false;
+    std::uint32_t restarts = 0;  // a new number restarts the script, or lets a live hand rest
+    bool frozen = false;         // stops time for handle and hand
+    std::uint32_t grants = 0;    // a new number lets `granted_ticks` pass while frozen
     int granted_ticks = 0;
 };
 using HandOrders = Mailbox<HandOrder>;

@@ -103,6 +103,7 @@ ServoTick step_with_taken(const ServoSettings& settings, ServoState& state, Exch
     ServoTick tick;
     tick.reading = reading;
     tick.clutched = clutched;
+    tick.is_at_stop = is_at_stop(reading, settings.half_workspace_m);
     tick.contact = state.contact;
     HandPose pose{reading.time_s, state.travel_m, state.turn};
     Vec3 wanted = Vec3::Zero();
@@ -119,6 +120,8 @@ ServoTick step_with_taken(const ServoSettings& settings, ServoState& state, Exch
         tick.damping_newton = done.damping_newton;
         tick.clipped_m = done.clipped_m;
         tick.overtravel_m = guarded.overtravel_m;
+        tick.waiting_m = guarded.waiting_m;
+        tick.cap_N_per_m = settings.guarded->device_cap_N_per_m;
         tick.contact = touch_now(state.contact, guarded, done);
         if (guarded.is_placed) {
             pose.molecule = guarded.molecule;

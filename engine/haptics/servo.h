@@ -23,6 +23,7 @@ struct ServoSettings {
     int delay_ticks = 0;  // delay between computing and sending a force, 0 to max_servo_delay_ticks
     std::optional<GuardedSettings> guarded = {};  // guarded coupling; unset for the paper's modes
     bool is_ending = false;                       // the program is ending
+    Vec3 half_workspace_m = Vec3::Zero();         // of the device
 };
 
 // The state between two ticks.
@@ -62,8 +63,9 @@ struct ServoTick {
     double force_gain = 0;            // gain F_h/F_m of the force law at this tick
     double hand_energy_J = 0;
     bool clutched = false;
-    bool clamped = false;  // whether the force was clipped
-    bool stopped = false;  // a force was not finite; stays set
+    bool clamped = false;     // whether the force was clipped
+    bool stopped = false;     // a force was not finite; stays set
+    bool is_at_stop = false;  // the handle is at an end of its workspace
     double followed =
         1;  // share of the handle's travel that the molecule followed, without clutch and limits
     bool is_safety_full = true;              // whether the full safety chain acted
@@ -76,7 +78,9 @@ struct ServoTick {
         Mat3::Zero();  // molecule travel per handle travel: inverse of A_d as a tensor
     Vec3 damping_newton = Vec3::Zero();  // damping force of the servo in this tick
     Vec3 overtravel_m = Vec3::Zero();    // overtravel of the handle at the stop
+    Vec3 waiting_m = Vec3::Zero();       // handle travel that waits for the contact model
     Vec3 clipped_m = Vec3::Zero();       // clipped travel in this tick
+    double cap_N_per_m = 0;              // the device's stiffness cap
 };
 
 // Takes the newest contact model out of the exchange, puts the hand's pose in, returns the force

@@ -16,8 +16,9 @@ bool ask_for_locked_memory() noexcept;
 // What a user does for both to be granted; empty where nothing can be done.
 std::string_view real_time_remedy() noexcept;
 
-// The calling thread, and on POSIX those that it starts, after other threads.
-void lower_priority() noexcept;
+// The calling thread, and on POSIX those that it starts, after other threads, by so many steps of
+// nice; drawing by 5.
+void lower_priority(int steps = 5) noexcept;
 
 // Until that moment: asleep, and awake for the last 80 us, since a system wakes threads late.
 inline void wait_awake_until(std::chrono::steady_clock::time_point moment) {

@@ -48,8 +48,7 @@ AccuracyLog::AccuracyLog(const SceneDescription& scene, const ServoSettings& ser
       period_us_(1e3 * scene.period_ms) {
     report_.within_pN = scene.coupling.feel_within_pN;
     if (!servo.guarded) return;
-    cap_N_per_m_ = guarded_cap(scene.device.viscosity_N_s_per_m, servo.guarded->damping_N_s_per_m,
-                               servo.delay_ticks);
+    cap_N_per_m_ = servo.guarded->device_cap_N_per_m;
     report_.range_pN = scene.coupling.feel_pN;
     if (const auto range = report_.range_pN) {
         for (std::size_t i = 0; i < range->size(); ++i)

@@ -46,6 +46,8 @@ std::string word_of(std::uint64_t value) { return fmt::format("{}", value); }
 std::string word_of(std::uint32_t value) { return fmt::format("{}", value); }
 std::string word_of(DeviceTrouble value) { return fmt::format("{}", static_cast<int>(value)); }
 
+constexpr FileVersion first_with_caps{2, 1};
+
 constexpr char same = '=';
 
 // The words of a hand, "=" where they are those of before, but for those at the end.
@@ -106,6 +108,7 @@ Json as_json(const HandDevice& device) {
             {"peak_force_N", spec.peak_force_newton},
             {"continuous_force_N", spec.continuous_force_newton},
             {"viscosity_N_s_per_m", spec.viscosity_N_s_per_m},
+            {"cap_N_per_m", spec.cap_N_per_m},
             {"half_workspace_m", {half.x(), half.y(), half.z()}},
             {"is_real", spec.is_real},
             {"stands_still", device.stands_still}};
@@ -307,6 +310,8 @@ private:
         device.spec.peak_force_newton = read_amount(json, "peak_force_N");
         device.spec.continuous_force_newton = read_amount(json, "continuous_force_N");
         device.spec.viscosity_N_s_per_m = read_amount(json, "viscosity_N_s_per_m");
+        if (journal_.version >= first_with_caps)
+            device.spec.cap_N_per_m = read_amount(json, "cap_N_per_m");
         const auto half = json.find("half_workspace_m");
         if (half == json.end() || !half->is_array() || half->size() != 3 ||
             !std::ranges::all_of(*half, [](const Json& x) { return x.is_number(); }))
@@ -400,6 +405,17 @@ private:
 };
 
 }  // namespace
+
+void complete_caps(const SceneDescription& scene, Journal& journal) {
+    if (journal.version >= first_with_caps) return;
+    const auto complete = [&](HandDevice& device) {
+        device.spec.viscosity_N_s_per_m = scene.device.viscosity_N_s_per_m;
+    };
+    std::ranges::for_each(journal.devices, complete);
+    for (PlayedEvent& played : journal.events) {
+        if (auto* const change = std::get_if<DeviceEvent>(&played.event)) complete(change->device);
+    }
+}
 
 Journal parse_journal(std::string_view text, const std::string& file) {
     Parser parser(file);

@@ -1,7 +1,7 @@
 // A live session on disk, journal.txt: what its simulation and its servos were given, from its
 // first moment, so that it can be played again to the bit. Lines of words between blanks:
 //
-//   # Palpa journal 2.0       the version of its format (core/file_versions.h)
+//   # Palpa journal 2.1       the version of its format (core/file_versions.h)
 //   hand {JSON}             each hand's device, as the session began
 //   p POSES                 the simulation: what the last step found goes to the servos
 //   s POSES TOOK_US         a step, and its wall time
@@ -64,6 +64,10 @@ struct Journal {
 // version 1, edits have the names of scene format 1. What is behind the last whole line
 // of one that was cut off does not count.
 Journal parse_journal(std::string_view text, const std::string& file);
+
+// Gives devices of a journal before version 2.1 the scene's viscosity, from which the stiffness cap
+// of every device was found then.
+void complete_caps(const SceneDescription& scene, Journal& journal);
 
 // Writes a journal line by line.
 class JournalWriter {

@@ -107,6 +107,7 @@ void LiveSimulation::play(const StepEvent& event) {
     readout_.engine = describe_engine(world_);
     lesson_.measure(world_);
     readout_.lesson = lesson_.measures();
+    follow_unbinding();
     time_s_ += world_.resource<Clock>().period_s;
 }
 
@@ -195,6 +196,7 @@ void LiveSimulation::obey(const Reset& reset) {
     }
     history_ = {};
     draft_.reset();
+    unbinding_.reset();
     readout_.edit_under_way.clear();
     edits_ = EditPlayer(scene_);
     time_s_ = 0;
@@ -288,6 +290,22 @@ void LiveSimulation::publish_edit(bool settles) {
     const std::vector<Entity> hands = find_hands(world_);
     for (std::size_t slot = 0; slot < devices_.size(); ++slot)
         felt_[slot] = contact_of(world_, hands[slot]).answer.model;
+}
+
+void LiveSimulation::follow_unbinding() {
+    const bool is_held = world_.find<Grip>(first_hand(world_)) != nullptr;
+    if (!has_mobile(world_) || !is_held || find_remote_engine(world_)) return;
+    const bool is_other = std::exchange(unbinding_edition_, edition_) != edition_;
+    if (!unbinding_ || (is_other && !unbinding_->suits(world_))) {
+        unbinding_.emplace(world_);
+    } else {
+        unbinding_->add(world_);
+    }
+}
+
+std::optional<UnbindingPath> LiveSimulation::unbinding() const {
+    if (!unbinding_) return {};
+    return unbinding_->unbinding();
 }
 
 std::vector<std::uint32_t> LiveSimulation::list_starts() const {

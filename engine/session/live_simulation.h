@@ -9,6 +9,7 @@
 #include "session/edit_player.h"
 #include "session/lesson_meter.h"
 #include "session/live_events.h"
+#include "session/unbinding_path.h"
 #include "simulation/client_pull.h"
 #include "simulation/edit.h"
 #include "statics/renewal_worker.h"
@@ -77,6 +78,9 @@ public:
     const Readout& readout() const noexcept { return readout_; }
     // The edits that a person made and did not undo, without the scene's own.
     std::vector<EditDescription> list_edits() const;
+    // The path of what the first hand holds, since it was first held; nothing if no molecule moves
+    // by itself.
+    std::optional<UnbindingPath> unbinding() const;
     // A number that changes when molecules or their names change.
     std::uint64_t edition() const noexcept { return edition_; }
 
@@ -93,6 +97,7 @@ private:
     void edit(const EditDescription& edit, bool settles);
     void refuse(const EditDescription& edit, std::string why);
     void publish_edit(bool settles);
+    void follow_unbinding();
     void take_hold_anew(std::span<const std::uint32_t> last_starts);
     std::vector<std::uint32_t> list_starts() const;
     void post(std::size_t slot, const LocalContactModel& contact);
@@ -115,8 +120,10 @@ private:
     std::optional<Draft> draft_;
     EditPlayer edits_;
     LessonMeter lesson_;
-    std::optional<ClientPull> pull_;  // that acts in every step
-    double time_s_ = 0;               // of the steps so far
+    std::optional<UnbindingLog> unbinding_;
+    std::uint64_t unbinding_edition_ = 0;  // at its last step
+    std::optional<ClientPull> pull_;       // that acts in every step
+    double time_s_ = 0;                    // of the steps so far
     std::vector<HandPose> poses_;
     // The contact models that the hands feel now; the last step's answer is in the simulation.
     std::vector<ContactModel> felt_;

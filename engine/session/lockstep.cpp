@@ -29,7 +29,7 @@ void run_lockstep(const LockstepSettings& settings, std::span<const LockstepHand
         for (std::size_t i = 0; i < count; ++i) ticks[i] = servos[i].tick;
         on_ticks(ticks);
         for (std::size_t i = 0; i < count; ++i) {
-            hands[i].device.show(ticks[i].contact);
+            hands[i].device.show(ticks[i].contact, ticks[i].waiting_m);
             hands[i].device.write(ticks[i].sent_newton);
             servos[i].exchange.hand.read(poses[i]);
         }

@@ -62,6 +62,10 @@ constexpr std::array columns = std::to_array<std::string_view>({"time_s",
                                                                 "molecule_turn_x_rad",
                                                                 "molecule_turn_y_rad",
                                                                 "molecule_turn_z_rad",
+                                                                "cap_N_per_m",
+                                                                "waiting_m",
+                                                                "clipped_m",
+                                                                "at_stop",
                                                                 "force_error_estimate_nN",
                                                                 "model_age_angstrom"});
 
@@ -118,6 +122,10 @@ std::array<double, columns.size()> trace_values(const ServoTick& tick) {
             molecule_turn.x(),
             molecule_turn.y(),
             molecule_turn.z(),
+            tick.cap_N_per_m,
+            tick.waiting_m.norm(),
+            tick.clipped_m.norm(),
+            tick.is_at_stop ? 1.0 : 0.0,
             contact.error_estimate_newton * 1e9,
             contact.model_age_angstrom};
 }
@@ -452,8 +460,16 @@ void add_felt(const Summary& hand, bool has_engine, nlohmann::ordered_json& json
     json["last_angstrom"] = hand.last_angstrom;
 }
 
+nlohmann::ordered_json travel_as_json(const HandTravel& travel) {
+    return {{"handle_m", travel.handle_m},
+            {"lost_m", travel.lost_m},
+            {"strokes", travel.strokes},
+            {"at_stop_s", travel.at_stop_s}};
+}
+
 // What held its force back.
 void add_safety(const Summary& hand, nlohmann::ordered_json& json) {
+    json["travel"] = travel_as_json(hand.travel);
     json["clamped_share"] = hand.clamped_share;
     json["safety"] = hand.is_safety_full ? "full" : "paper";
     json["safety_share"] = hand.safety_share;
@@ -522,6 +538,7 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
         json["farthest_angstrom"] = summary.unbinding->farthest;
         json["clearance_angstrom"] = summary.unbinding->clearance;
         json["closest_atoms_angstrom"] = summary.unbinding->closest;
+        if (summary.unbinding->free_s) json["free_s"] = *summary.unbinding->free_s;
         json["last_rmsd_angstrom"] = summary.unbinding->last_rmsd;
         json["last_backbone_rmsd_angstrom"] = summary.unbinding->last_backbone;
         json["last_pocket_rmsd_angstrom"] = summary.unbinding->last_pocket;

@@ -47,8 +47,19 @@ std::uint64_t count_ticks(const SceneDescription& scene) noexcept {
     return static_cast<std::uint64_t>(std::ceil(scene.seconds / servo_tick_s - 1e-9));
 }
 
+DeviceSpec describe_emulated_device(const SceneDescription& scene) {
+    return {.name = "emulated device of the scene",
+            .viscosity_N_s_per_m = scene.device.viscosity_N_s_per_m,
+            .half_workspace_m = Vec3::Constant(0.1),
+            .is_real = false};
+}
+
+ServoSettings build_servo_settings(const SceneDescription& scene, const World& world) {
+    return build_servo_settings(scene, world, describe_emulated_device(scene));
+}
+
 ServoSettings build_servo_settings(const SceneDescription& scene, const World& world,
-                                   const Vec3& half_workspace_m) {
+                                   const DeviceSpec& device) {
     const CouplingDescription& c = scene.coupling;
     ServoSettings settings{
         world.resource<Coupling>().laws.force,
@@ -57,17 +68,23 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const World& w
     settings.safety.starts_engaged = c.engage == Engage::AtOnce;
     // Friction is lost twice on turning round, and the rest has to show (haptics/safety.h).
     settings.safety.frozen_newton = 2 + 2 * scene.device.friction_N;
+    settings.half_workspace_m = device.half_workspace_m;
+    if (device.is_real) {
+        settings.safety.is_full = true;
+        settings.safety.starts_engaged = false;
+        limit_to(device, settings.safety);
+    }
     if (!world.resource<Coupling>().is_guarded) return settings;
     GuardedSettings& guarded = settings.guarded.emplace();
     guarded.force_law = world.resource<Coupling>().laws.force;
     guarded.displacement_law = world.resource<Coupling>().laws.displacement;
     guarded.gain_shape = c.gain_shape;
     guarded.workspace = build_workspace(c.workspace);
-    guarded.half_workspace_m = half_workspace_m;
+    guarded.half_workspace_m = device.half_workspace_m;
     guarded.damping_N_s_per_m =
         guarded_damping(c.damping_N_s_per_m, scene.device.inertia_kg, settings.delay_ticks);
-    guarded.cap_N_per_m = guarded_cap(scene.device.viscosity_N_s_per_m, guarded.damping_N_s_per_m,
-                                      settings.delay_ticks);
+    guarded.device_cap_N_per_m = guarded.cap_N_per_m =
+        guarded_cap(device, guarded.damping_N_s_per_m, settings.delay_ticks);
     // Where the scene says what must be felt, no tick feels more than the cap. Of 60 closed paths
     // in space with 50 to 400 pN none outruns its limits with this A_d, one does by 12.5 mJ with
     // half of it.
@@ -78,16 +95,6 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const World& w
     guarded.stop_newton = c.stop_nN * 1e-9;
     guarded.horizon_s = guarded_horizon(guarded.cap_N_per_m, guarded.damping_N_s_per_m,
                                         scene.device.inertia_kg, settings.delay_ticks);
-    return settings;
-}
-
-ServoSettings build_servo_settings(const SceneDescription& scene, const World& world,
-                                   const DeviceSpec& device) {
-    ServoSettings settings = build_servo_settings(scene, world, device.half_workspace_m);
-    if (!device.is_real) return settings;
-    settings.safety.is_full = true;
-    settings.safety.starts_engaged = false;
-    limit_to(device, settings.safety);
     return settings;
 }
 

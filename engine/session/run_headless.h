@@ -41,16 +41,15 @@ using BeforeStepFunction = std::function<void(World&, const EditFunction& edit)>
 // Number of servo ticks of the scene's run.
 std::uint64_t count_ticks(const SceneDescription& scene) noexcept;
 
-// Servo settings for an emulated device: the whole safety chain only with guarded coupling.
-// `half_workspace_m`: of the device, for coupling that moves a small workspace through a large
-// scene.
-ServoSettings build_servo_settings(const SceneDescription& scene, const World& world,
-                                   const Vec3& half_workspace_m = Vec3::Constant(0.1));
+// The device of the scene's [device] table, as a device describes itself.
+DeviceSpec describe_emulated_device(const SceneDescription& scene);
 
-// Servo settings for this device. A real device always has the whole safety chain, with the
-// device's limits, and forces start after quiet cycles with a ramp.
+// Servo settings for this device, or for the scene's own. A real device always has the whole safety
+// chain, with the device's limits, and forces start after quiet cycles with a ramp; an emulated one
+// has the whole chain only with guarded coupling.
 ServoSettings build_servo_settings(const SceneDescription& scene, const World& world,
                                    const DeviceSpec& device);
+ServoSettings build_servo_settings(const SceneDescription& scene, const World& world);
 
 // Applies changes of the coupling by edits to the hands; their servos blend into the new values.
 void renew_servos(const World& world, std::span<LockstepHand> hands);

@@ -69,6 +69,27 @@ void Statistics::add_place(const ContactModel& contact) {
     running_.last_angstrom = beyond && contact.active_freedom <= 1 ? -distance : distance;
 }
 
+// Counts the way in straight pieces of half a millimetre, so that encoder steps and tremor add
+// nothing.
+void Statistics::add_travel(const ServoTick& tick) {
+    constexpr double piece_m = 0.5e-3;
+    running_.travel.lost_m += tick.clipped_m.norm();
+    if (tick.is_at_stop && !tick.clutched) ++stop_ticks_;
+    if (!is_sane(tick.reading)) return;
+    const Vec3& handle_m = tick.reading.position_m;
+    if (tick.clutched || !counted_m_) {
+        counted_m_ = handle_m;
+        is_in_stroke_ = false;
+        return;
+    }
+    const double length = (handle_m - *counted_m_).norm();
+    if (length < piece_m) return;
+    running_.travel.handle_m += length;
+    counted_m_ = handle_m;
+    if (!is_in_stroke_) ++running_.travel.strokes;
+    is_in_stroke_ = true;
+}
+
 void Statistics::add(const ServoTick& tick) {
     if (running_.ticks == 0 || !tick.contact.is_still) add_place(tick.contact);
     running_.net_work_J = tick.hand_energy_J;
@@ -79,6 +100,7 @@ void Statistics::add(const ServoTick& tick) {
         running_.largest_attraction_N = std::max(running_.largest_attraction_N, -apart);
         running_.largest_repulsion_N = std::max(running_.largest_repulsion_N, apart);
     }
+    add_travel(tick);
     running_.stopped = tick.stopped;
     running_.is_safety_full = running_.is_safety_full && tick.is_safety_full;
     if (tick.clamped) ++clamped_ticks_;
@@ -118,6 +140,7 @@ Summary Statistics::summary() const {
             static_cast<double>(clamped_ticks_) / static_cast<double>(summary.ticks);
         summary.safety_share =
             static_cast<double>(safety_ticks_) / static_cast<double>(summary.ticks);
+        summary.travel.at_stop_s = static_cast<double>(stop_ticks_) * tick_s_;
     }
     return summary;
 }

@@ -47,6 +47,14 @@ struct EngineSummary {
     std::string state;                // state at the end, a sentence
 };
 
+// The way of a hand's handle, without that under the clutch.
+struct HandTravel {
+    double handle_m = 0;        // length of the way; tremor below half a millimetre does not count
+    double lost_m = 0;          // handle travel that the molecule will never follow (clipped)
+    std::uint64_t strokes = 0;  // ways between two clutches
+    double at_stop_s = 0;       // time at an end of the workspace, s
+};
+
 struct Summary {
     std::string device = "emulated Omni";
     std::uint64_t ticks = 0, steps = 0;
@@ -66,7 +74,8 @@ struct Summary {
     double closest_angstrom = 0;  // smallest distance of the reference atoms
     double last_angstrom = 0;     // negative on the other side
     bool went_through = false;    // the molecule passed through the other one
-    double clamped_share = 0;     // share of the time with clipped force
+    HandTravel travel;
+    double clamped_share = 0;  // share of the time with clipped force
     // Share of the time in which a safety measure reduced the force, and the gravest of these.
     double safety_share = 0;
     SafetyStage gravest = SafetyStage::None;
@@ -109,15 +118,19 @@ public:
 
     Summary summary() const;
     std::uint64_t ticks() const noexcept { return running_.ticks; }
+    const HandTravel& travel() const noexcept { return running_.travel; }
 
 private:
     void add_place(const ContactModel& contact);
+    void add_travel(const ServoTick& tick);
 
     double tick_s_;
     Summary running_;
     Vec3 first_place_angstrom_ = Vec3::Zero();  // at the last start
     std::uint32_t start_ = 0;
-    std::uint64_t clamped_ticks_ = 0, safety_ticks_ = 0;
+    std::uint64_t clamped_ticks_ = 0, safety_ticks_ = 0, stop_ticks_ = 0;
+    std::optional<Vec3> counted_m_;  // handle position up to which the way is counted
+    bool is_in_stroke_ = false;
     std::array<std::vector<double>, 3> recent_force_;  // by axis, N: ring buffer of the last 4 s
     StepTimes step_times_;
 };

@@ -14,6 +14,19 @@ namespace {
 
 constexpr double heavier_than_hydrogen = 2.5;  // amu
 
+bool is_heavy(const AtomTable& atoms, std::size_t i) noexcept {
+    return atoms.mass[i] >= heavier_than_hydrogen;
+}
+
+// The heavy atoms that a hand holds.
+std::vector<std::size_t> find_heavy(const World& world, Entity hand) {
+    std::vector<std::size_t> heavy;
+    for (const std::uint32_t i : held_atoms(world, hand)) {
+        if (is_heavy(world.resource<AtomTable>(), i)) heavy.push_back(i);
+    }
+    return heavy;
+}
+
 Vec3 centre_of_held(const World& world) {
     const Entity hand = first_hand(world);
     if (const Spring* const spring = spring_of(world, hand))
@@ -24,18 +37,20 @@ Vec3 centre_of_held(const World& world) {
 
 }  // namespace
 
+bool UnbindingLog::suits(const World& world) const {
+    return world.resource<AtomTable>().size() == start_.size() &&
+           find_heavy(world, first_hand(world)) == heavy_;
+}
+
 UnbindingLog::UnbindingLog(const World& start)
     : comparison_(start), start_(start.resource<AtomTable>().positions) {
     const AtomTable& atoms = start.resource<AtomTable>();
     const Entity hand = first_hand(start);
-    const auto is_heavy = [&](std::size_t i) { return atoms.mass[i] >= heavier_than_hydrogen; };
-    for (const std::uint32_t i : held_atoms(start, hand)) {
-        if (is_heavy(i)) heavy_.push_back(i);
-    }
+    heavy_ = find_heavy(start, hand);
     const AtomRange grabbed = held_range(start, hand);
     for (std::size_t i = 0; i < atoms.size(); ++i) {
         const bool is_grabbed = i >= grabbed.first && i < grabbed.first + grabbed.count;
-        if (!is_grabbed && is_heavy(i)) other_heavy_.push_back(i);
+        if (!is_grabbed && is_heavy(atoms, i)) other_heavy_.push_back(i);
     }
     start_centre_ = centre_of_held(start);
     unbinding_.closest = std::numeric_limits<double>::infinity();
@@ -54,6 +69,10 @@ void UnbindingLog::add(const World& world) {
     }
     const double clearance = std::sqrt(nearest2);
     unbinding_.closest = std::min(unbinding_.closest, clearance);
+    if (!unbinding_.free_s && clearance > free_angstrom) {
+        const Clock& clock = world.resource<Clock>();
+        unbinding_.free_s = static_cast<double>(clock.steps) * clock.period_s;
+    }
     const Vec3 centre = centre_of_held(world);
     const double distance = (centre - start_centre_).norm();
     if (distance > unbinding_.farthest) {

@@ -5,15 +5,20 @@
 #include "session/compare_poses.h"
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace palpa {
+
+inline constexpr double free_angstrom = 4;
 
 // Å. Heavy atoms are all atoms except hydrogens.
 struct UnbindingPath {
     double farthest = 0;  // largest distance of the centre of mass from its start
     double clearance =
         0;  // at that time: shortest distance of its heavy atoms to those of all other molecules
+    // Time at which it was first free: no heavy atom of others within `free_angstrom`.
+    std::optional<double> free_s = {};
     double closest = 0;  // the shortest such distance of the whole path
     // RMSD between end and start, as in session/compare_poses.h: of its heavy atoms, of the
     // backbone of the others, and of the side chains of the pocket.
@@ -26,6 +31,8 @@ class UnbindingLog {
 public:
     explicit UnbindingLog(const World& start);
 
+    // Whether the world has the same atoms, and the first hand holds the same ones.
+    bool suits(const World& world) const;
     void add(const World& world);
     UnbindingPath unbinding() const;
 

@@ -417,6 +417,13 @@ SecondOrder build_second_order(const StaticsDescription& s, const RelaxSettings&
     if (s.responses > 0) second.settings.responses = static_cast<std::size_t>(s.responses);
     second.most_evaluations = second.settings.evaluations;
     if (!s.renews_beside) second.delay_s = 1e-3 * s.renewal_ms;
+    // A renewal beside the steps relaxes a little and linearises anew rather than relaxing long
+    // with an old factor: after a snap that is at rest sooner.
+    if (s.renews_beside) {
+        second.settings.least_relaxation = 4;
+        second.settings.most_relaxation = 10;
+        second.settings.relax_move = 0.25;
+    }
     second.settings.renews_at_once = !s.renews_beside && s.renewal_ms == 0;
     second.statics =
         build_second_order_statics(model_of(world), find_held_parts(world, second.hands));

@@ -108,7 +108,7 @@ std::optional<RelaxedStiffness> find_relaxed_stiffness(const World& world, Entit
         result.reach_angstrom =
             std::max(settings.farthest_hand - find_age(*second, *columns), settings.stride);
     } else {
-        result.reach_angstrom = settings.farthest_hand;
+        result.reach_angstrom = find_farthest_hand(settings, second->statics);
         result.gone_angstrom = find_shift(*second, *columns);
     }
     return result;
@@ -157,7 +157,7 @@ std::optional<FollowingAtoms> find_following(const World& world, Entity hand,
     for (const auto* const moves : {&following.points.group, &following.points.environment}) {
         for (const Mat3& move : *moves) farthest = std::max(farthest, move.norm());
     }
-    following.reach_angstrom = second->settings.farthest / farthest;
+    following.reach_angstrom = find_farthest(second->settings, second->statics) / farthest;
     following.memory = build_following_memory(field.frozen);
     following.there = evaluate_following_field(field.frozen, field.group, following.points,
                                                Vec3::Zero(), following.memory);

@@ -12,7 +12,10 @@ void RenewalWorker::start_if_pending(const TorsionModel& model, const SecondOrde
     if (is_busy() || !statics.pending || statics.pending->made) return;
     if (!worker_) worker_.emplace();
     making_ = worker_->start([&model, &settings, &statics] {
-        lower_priority();
+        // Once for the thread, which makes all renewals.
+        constexpr int behind_steps = 2;  // and ahead of drawing
+        thread_local const bool is_lowered = (lower_priority(behind_steps), true);
+        (void)is_lowered;
         try {
             make_pending(model, settings, statics);
         } catch (const std::bad_alloc&) {

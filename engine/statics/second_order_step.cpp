@@ -194,9 +194,21 @@ void choose_reach(const SecondOrderSettings& settings, SecondOrderStatics& stati
     if (age > late) reach = std::min(reach, std::max(reach - change, settings.nearest_reach));
 }
 
+constexpr double near_end = 0.8;  // of the region in which a model is valid
+
+// Whether a hand has come to the end of that region.
+bool is_near_end(const SecondOrderSettings& settings, const SecondOrderStatics& statics) {
+    return statics.refused_way || find_farthest_way(statics.renewals.lineariser.held.hands,
+                                                    statics.at.tail(statics.linear->hands())) >=
+                                      near_end * find_farthest_hand(settings, statics);
+}
+
 void adopt_renewal(const TorsionModel& model, const SecondOrderSettings& settings,
                    const Renewal& renewal, SecondOrderStatics& statics) {
     if (!renewal.linear) return;
+    statics.hand_waited =
+        !settings.renews_at_once && statics.linear && is_near_end(settings, statics);
+    statics.steps_with_model = 0;
     note_joint_answers(model, settings, renewal, statics);
     statics.linear = renewal.linear;
     statics.near = renewal.linear->near;
@@ -231,6 +243,7 @@ public:
 
     SecondOrderReport run() {
         statics_.start = state_.positions;
+        ++statics_.steps_with_model;
         const std::size_t before = statics_.model_evaluations;
         if (!statics_.linear && !renew(true)) return report_;
         if (!place_with_springs()) return report_;
@@ -318,7 +331,10 @@ private:
     // the hands are still to be followed.
     bool prepare_still(double way) {
         constexpr double rounding = 1e-9;  // Å: a longer way is a hand that creeps
-        if (has_moved() || way > moved * settings_.stride) {
+        // A hand that waited for this model goes on once the servo has it.
+        constexpr std::size_t until_it_goes_on = 2;  // steps
+        const bool goes_on = statics_.hand_waited && statics_.steps_with_model <= until_it_goes_on;
+        if (has_moved() || goes_on || way > moved * settings_.stride) {
             statics_.still_steps = 0;
             statics_.is_at_rest = false;
             return true;
@@ -361,8 +377,8 @@ private:
             find_largest_move(model_.mobile_atoms, linear().at.positions, state_.positions);
         if (!statics_.is_settled || farthest > settings_.renew_atom) return true;
         // Hands that stay at the end of the region are to have another.
-        constexpr double near = 0.7, near_end = 0.8;
-        const double end = near_end * settings_.farthest_hand;
+        constexpr double near = 0.7;
+        const double end = near_end * find_farthest_hand(settings_, statics_);
         if (!settings_.tolerance) return way >= std::min(settings_.renew_hand, end);
         return way >= end || error_estimate() > near * *settings_.tolerance;
     }
@@ -409,7 +425,8 @@ private:
         const Eigen::VectorXd d = statics_.at.tail(linear().hands());
         const double next = find_farthest_way(hands(), d + by);
         if (statics_.refused_way && next >= *statics_.refused_way) return true;
-        return next > settings_.farthest_hand && next > find_farthest_way(hands(), d);
+        return next > find_farthest_hand(settings_, statics_) &&
+               next > find_farthest_way(hands(), d);
     }
 
     // False, and everything is as it was, where an atom would leave the region of the model, or
@@ -425,11 +442,24 @@ private:
         go_back(at, value);
         if (!is_at_point()) {
             statics_.refused_way = find_farthest_way(hands(), at.tail(linear().hands()) + by);
+            if (!settings_.renews_at_once) go_part_of(by);
             return false;
         }
         move_hands_alone(at, by);
         if (!settings_.renews_at_once) evaluate();
         return false;
+    }
+
+    // Goes as much of a stride as the model allows.
+    void go_part_of(const Eigen::VectorXd& by) {
+        const Eigen::VectorXd at = statics_.at;
+        const ModelValue value = statics_.value;
+        for (const double share : {0.5, 0.25}) {
+            follow_linearly(model_, settings_, share * by, state_, statics_);
+            relax_model(model_, settings_, state_, statics_);
+            if (model_holds()) return;
+            go_back(at, value);
+        }
     }
 
     void go_back(const Eigen::VectorXd& at, const ModelValue& value) {
@@ -442,7 +472,7 @@ private:
     bool model_holds() const {
         return is_finite(statics_) &&
                find_largest_move(model_.mobile_atoms, linear().at.positions, state_.positions) <
-                   settings_.farthest &&
+                   find_farthest(settings_, statics_) &&
                !are_too_close(linear().close, state_.positions);
     }
 
@@ -481,6 +511,16 @@ private:
 };
 
 }  // namespace
+
+double find_farthest_hand(const SecondOrderSettings& settings,
+                          const SecondOrderStatics& statics) noexcept {
+    return settings.farthest_hand * (statics.hand_waited ? wider_for_fast_hands : 1);
+}
+
+double find_farthest(const SecondOrderSettings& settings,
+                     const SecondOrderStatics& statics) noexcept {
+    return settings.farthest * (statics.hand_waited ? wider_for_fast_hands : 1);
+}
 
 SecondOrderStatics build_second_order_statics(const TorsionModel& model, HeldParts held) {
     SecondOrderStatics statics;

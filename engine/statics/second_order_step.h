@@ -48,6 +48,10 @@ struct HandPlace {
     Quat turn;
 };
 
+// Where renewals do not take place at once, a hand that waited at the end of a model's region is
+// faster than renewals. It gets a region so much wider: fewer renewals, each with a larger error.
+inline constexpr double wider_for_fast_hands = 1.5;
+
 // State that steps carry over from one to the next.
 struct SecondOrderStatics {
     RenewalMemory renewals;
@@ -66,6 +70,10 @@ struct SecondOrderStatics {
     // Way of the hands (Å) at which this model became invalid: until the next model, hands move no
     // farther.
     std::optional<double> refused_way;
+    // The hand waited at the end of the region of the model before, so it goes on with this one;
+    // and the steps since this model is used.
+    bool hand_waited = false;
+    std::size_t steps_with_model = 0;
     bool is_spent = false;    // this model cannot relax at the waiting position of the hands
     double error_growth = 0;  // growth of errors at renewals, kcal/mol/Å per squared age
     double near_reach = 0;    // of the next model, Å, with a tolerance
@@ -81,6 +89,12 @@ struct SecondOrderStatics {
     std::size_t renewed = 0, discarded = 0;  // number of renewals; number of repeated strides
     std::size_t model_evaluations = 0;
 };
+
+// How far a hand, and an atom, may be from the point of linearisation now (Å).
+double find_farthest_hand(const SecondOrderSettings& settings,
+                          const SecondOrderStatics& statics) noexcept;
+double find_farthest(const SecondOrderSettings& settings,
+                     const SecondOrderStatics& statics) noexcept;
 
 SecondOrderStatics build_second_order_statics(const TorsionModel& model, HeldParts held);
 

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string_view>
 
 namespace palpa {
@@ -99,9 +100,11 @@ UiBackend::~UiBackend() {
     vkDestroyDescriptorPool(device_.handle(), descriptors_, nullptr);
 }
 
-void UiBackend::begin() {
+void UiBackend::begin(bool has_cursor) {
     ImGui_ImplVulkan_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    constexpr float nowhere = std::numeric_limits<float>::lowest();  // as the library says it
+    if (!has_cursor) ImGui::GetIO().MousePos = {nowhere, nowhere};
     ImGui::NewFrame();
 }
 

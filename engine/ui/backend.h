@@ -18,7 +18,8 @@ public:
     UiBackend& operator=(const UiBackend&) = delete;
     ~UiBackend();
 
-    void begin();
+    // `has_cursor`: false while the cursor is captured; then nothing is pointed at.
+    void begin(bool has_cursor = true);
     void end();
     void draw(VkCommandBuffer commands);
 

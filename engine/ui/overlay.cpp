@@ -32,7 +32,6 @@ namespace {
 constexpr ImU32 task_colour = IM_COL32(20, 90, 190, 255);
 constexpr ImU32 done_colour = IM_COL32(20, 130, 70, 255);
 constexpr const char* lesson_panel = for_translation("Lesson");
-constexpr double least_overtravel_m = 0.5e-3;  // at the wall, that counts
 
 // Keys and what they do, twice beside each other.
 struct HelpTable {
@@ -94,14 +93,9 @@ Overlay::Overlay(const SceneDescription& scene)
 }
 
 void Overlay::update_limit() {
-    const auto delay_ticks = static_cast<int>(scene_.device.servo_delay_ticks);
-    stiffness_limit_ =
-        is_guarded()
-            ? guarded_cap(scene_.device.viscosity_N_s_per_m,
-                          guarded_damping(settings_.coupling.damping_N_s_per_m,
-                                          scene_.device.inertia_kg, delay_ticks),
-                          delay_ticks)
-            : calm_stiffness(scene_, hand_model(scene_.hand.grip), settings_.period_ms * 1e-3);
+    stiffness_limit_ = is_guarded() ? device_cap_N_per_m_
+                                    : calm_stiffness(scene_, hand_model(scene_.hand.grip),
+                                                     settings_.period_ms * 1e-3);
 }
 
 void Overlay::add_tick(const ServoTick& tick) {
@@ -125,6 +119,8 @@ void Overlay::add_tick(const ServoTick& tick) {
     cap_ratio_ = tick.cap_ratio;
     hand_energy_J_ = tick.hand_energy_J;
     overtravel_m_ = tick.overtravel_m.norm();
+    is_at_stop_ = tick.is_at_stop && !tick.clutched;
+    if (std::exchange(device_cap_N_per_m_, tick.cap_N_per_m) != tick.cap_N_per_m) update_limit();
     force_gain_ = tick.force_gain;
     history_.add(last_);
     // Nothing that an empty hand could do, or that was before the beginning.
@@ -413,6 +409,9 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
             "overtravel: the contact force has reached {:.3g} nN, so the molecule has stopped; "
             "move the hand back by {:.0f} mm before it follows again",
             settings_.coupling.stop_nN, std::ceil(1e3 * overtravel_m_));
+    });
+    warn(at_stop_for_s_, is_at_stop_, [&] {
+        return std::string(translated("the handle is at its end: release, move back, press again"));
     });
     if (went_through_) {
         warnings.emplace_back(

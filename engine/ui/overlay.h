@@ -3,6 +3,7 @@
 #include "scene/description.h"
 #include "session/commands.h"
 #include "session/lesson.h"
+#include "session/statistics.h"
 #include "ui/history.h"
 #include "ui/layout.h"
 #include "ui/lesson_panel.h"
@@ -43,7 +44,11 @@ struct OverlayStatus {
     std::optional<double> recorded_s;  // length of the running recording
     std::vector<LegendEntry> legend;   // of the picture's colours
     bool selects = false;              // the panel of selections replaces the lesson
+    HandTravel travel;                 // of the led hand
 };
+
+// The smallest overtravel (m) that is reported.
+inline constexpr double least_overtravel_m = 0.5e-3;
 
 class Overlay {
 public:
@@ -94,7 +99,7 @@ private:
     void draw_readings(const Readout& readout, const OverlayStatus& status,
                        std::vector<Action>& actions);
     void draw_forces(const ContactModel& contact) const;
-    void draw_gain_readings(const ContactModel& contact) const;
+    void draw_gain_readings(const ContactModel& contact, const HandTravel& travel) const;
     void draw_machine(const Readout& readout, const OverlayStatus& status);
     void choose_device(const OverlayStatus& status);
     void draw_comparison(const Readout& readout);
@@ -143,7 +148,8 @@ private:
     bool has_flexible_;           // molecules
     double stiffness_limit_ = 0;  // N/m, largest stiffness that is passive at the present period
     // Remaining time of each warning.
-    double shaking_for_s_ = 0, clamped_for_s_ = 0, late_for_s_ = 0, at_wall_for_s_ = 0;
+    double shaking_for_s_ = 0, clamped_for_s_ = 0, late_for_s_ = 0, at_wall_for_s_ = 0,
+           at_stop_for_s_ = 0;
 
     Lesson lesson_;
     std::vector<double> measured_;  // values of the lesson's steps in the last readout
@@ -155,6 +161,8 @@ private:
     bool has_tick_ = false, clamped_ = false, stopped_ = false;
     SafetyStage stage_ = SafetyStage::None, reason_ = SafetyStage::None;
     double felt_N_per_m_ = 0, cap_ratio_ = 1, hand_energy_J_ = 0, overtravel_m_ = 0;
+    bool is_at_stop_ = false;        // the handle is at an end of its workspace
+    double device_cap_N_per_m_ = 0;  // guarded coupling: the cap of the device in use
     double side_ = 0;  // side of the counterpart on which the molecule started, in one dimension
     bool went_through_ = false;
     bool wants_pause_ = false;

@@ -229,7 +229,7 @@ void Overlay::draw_readings(const Readout& readout, const OverlayStatus& status,
                             std::vector<Action>& actions) {
     if (!begin_readings("readings")) return;
     draw_forces(readout.contact);
-    draw_gain_readings(readout.contact);
+    draw_gain_readings(readout.contact, status.travel);
     draw_comparison(readout);
     reading(has_flexible_ ? translated("energy of all") : translated("energy"),
             fmt::format("{:.3f} kcal/mol", readout.contact.potential_kcal_per_mol),
@@ -276,15 +276,16 @@ void Overlay::draw_forces(const ContactModel& contact) const {
     }
 }
 
-void Overlay::draw_gain_readings(const ContactModel& contact) const {
+void Overlay::draw_gain_readings(const ContactModel& contact, const HandTravel& travel) const {
     const CouplingLaws laws = build_coupling_laws(settings_.coupling);
     const double felt = is_guarded() ? felt_N_per_m_ : felt_stiffness(laws, contact);
     reading(
         translated("stiffness felt"),
         format_translated("{:.4g} of {:.4g} N/m", felt, stiffness_limit_),
         translated("K = (dF_h/dF_m) k / A_d, N/m, and its limit. Guarded coupling: the limit is "
-                   "the cap, half of the device's stability limit; A_d is raised until K is below "
-                   "it. Other modes: the limit is the largest stable K of this hand, about B/(1.5 "
+                   "the cap of the device in use, half of its stability limit; A_d is raised until "
+                   "K is below it. Other modes: the limit is the largest stable K of this hand, "
+                   "about B/(1.5 "
                    "T_s), from the eigenvalues for hand, device, period and delay."));
     reading(
         translated("displ. gain"),
@@ -304,6 +305,11 @@ void Overlay::draw_gain_readings(const ContactModel& contact) const {
                               "molecule stopped. Move back by this much before it follows again.",
                               settings_.coupling.stop_nN)
                 .c_str());
+        reading(
+            translated("travel lost"),
+            format_translated("{:.1f} of {:.0f} cm", 100 * travel.lost_m, 100 * travel.handle_m),
+            translated("Handle travel that the molecule will never follow, and the travel so "
+                       "far. While the molecule waits for its model, up to 2 cm are kept."));
     }
 }
 

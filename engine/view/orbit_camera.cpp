@@ -48,6 +48,14 @@ float angstrom_per_pixel(const OrbitCamera& camera, const glm::vec3& place, floa
     return 2 * depth * std::tan(camera.vertical_angle / 2) / std::max(height, 1.0F);
 }
 
+glm::vec3 find_mouse_way(const OrbitCamera& camera, const glm::vec3& place, float height,
+                         float right, float down, float notches) {
+    constexpr float angstrom_per_notch = 0.25F;
+    const float scale = angstrom_per_pixel(camera, place, height);
+    return scale * (right * rightward(camera) - down * upward(camera)) -
+           notches * angstrom_per_notch * backward(camera);
+}
+
 void pan(OrbitCamera& camera, float right, float down, float height) {
     const float scale = angstrom_per_pixel(camera, camera.target, height);
     camera.target += scale * (down * upward(camera) - right * rightward(camera));

@@ -29,6 +29,10 @@ void orbit(OrbitCamera& camera, float azimuth, float elevation);
 void pan(OrbitCamera& camera, float right, float down, float height);
 // Å per pixel at the depth of a point, in a picture `height` pixels high.
 float angstrom_per_pixel(const OrbitCamera& camera, const glm::vec3& place, float height);
+// The way (Å) of a point at `place` by which it follows the mouse, pixels to the right and down, in
+// a picture `height` pixels high; a notch of the wheel moves it away from the eye.
+glm::vec3 find_mouse_way(const OrbitCamera& camera, const glm::vec3& place, float height,
+                         float right, float down, float notches);
 // Changes the distance by a factor; below 1 moves nearer.
 void zoom(OrbitCamera& camera, float factor);
 // The same while a point at the target's depth stays fixed in the picture: the point this many

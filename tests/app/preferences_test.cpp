@@ -41,7 +41,7 @@ TEST_CASE("preferences that are wrong say where", "[tools][preferences]") {
     CHECK_THAT(told("language = 1"), Contains("p.toml:1:12: language is not text"));
     CHECK_THAT(told("devise = \"omni\""),
                Contains("p.toml:1:10: unknown key 'devise'") &&
-                   Contains("device, sound, scene, recent, text_scale, language") &&
+                   Contains("device, sound, scene, recent, hand_explained, text_scale, language") &&
                    Contains("did you mean 'device'"));
 }
 

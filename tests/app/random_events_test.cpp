@@ -30,7 +30,9 @@ public:
 
     const DeviceSpec& spec() const noexcept override { return omni_.spec(); }
     DeviceReading read() noexcept override { return omni_.read(); }
-    void show(const ContactModel& contact) noexcept override { omni_.show(contact); }
+    void show(const ContactModel& contact, const Vec3& waiting_m) noexcept override {
+        omni_.show(contact, waiting_m);
+    }
     void write(const Vec3& force_newton) noexcept override {
         const double force = force_newton.norm();
         if (!std::isfinite(force)) is_finite_ = false;

@@ -1,6 +1,7 @@
 #include "devices/mouse_handle.h"
 
 #include "haptics/hand.h"
+#include "haptics/local_field.h"
 #include "haptics/safety.h"
 
 #include <Eigen/Eigenvalues>
@@ -100,6 +101,72 @@ TEST_CASE("the handle shakes from the stiffness on at which the poles say so", "
     const double at_first = 0.001 / K;
     CAPTURE(spring, late, largest_pole(spring));
     CHECK((late < at_first) == (largest_pole(spring) < 1));
+}
+
+TEST_CASE("the cap of the mouse is half of the stiffness that shakes it, for every delay",
+          "[devices][mouse]") {
+    const int delay = GENERATE(0, 1, 2, 3, 7);
+    const double grip_K = GENERATE(200.0, 500.0);
+    MouseHandleSettings settings{.stiffness_N_per_m = grip_K, .delay_ticks = delay};
+    const double limit = calm_mouse_stiffness(settings);
+    CHECK(MouseHandle(settings).spec().cap_N_per_m == 0.5 * limit);
+    // The poles of x' = a x - (1 - a) K_f/K x_(-delay), by a companion matrix.
+    const auto pole_of = [&](double felt) {
+        const double a = std::exp(-grip_K * 1e-3 / settings.damping_N_s_per_m);
+        Eigen::MatrixXd loop = Eigen::MatrixXd::Zero(delay + 1, delay + 1);
+        loop(0, 0) = a;
+        loop(0, delay) -= (1 - a) * felt / grip_K;
+        for (int i = 0; i < delay; ++i) loop(i + 1, i) = 1;
+        return Eigen::EigenSolver<Eigen::MatrixXd>(loop).eigenvalues().cwiseAbs().maxCoeff();
+    };
+    CAPTURE(delay, grip_K, limit);
+    CHECK(pole_of(0.999 * limit) < 1);
+    CHECK(pole_of(1.001 * limit) > 1);
+}
+
+TEST_CASE("a mouse has no end, and goes back to its middle under the clutch", "[devices][mouse]") {
+    HandOrders orders;
+    MouseHandle handle({.orders = &orders});
+    CHECK(handle.spec().half_workspace_m == Vec3::Zero());
+    double target_m = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        orders.post({Vec3(target_m += 2e-4, 0, 0)});
+        handle.write(Vec3::Zero());
+    }
+    CHECK(handle.read().position_m.x() > 3.9);
+    CHECK_FALSE(is_at_stop(handle.read(), handle.spec().half_workspace_m));
+    CHECK_FALSE(is_pressed(handle.read().buttons, Button::Clutch));
+
+    HandOrder released;
+    released.target_m = Vec3(target_m, 0, 0);
+    released.is_clutched = true;
+    orders.post(released);
+    for (int i = 0; i < 20'000; ++i) {
+        handle.write(Vec3::Zero());
+        REQUIRE(is_pressed(handle.read().buttons, Button::Clutch));
+    }
+    CHECK(handle.read().position_m.norm() < 1e-6);
+}
+
+TEST_CASE("a person at the mouse who sees the molecule wait goes on no farther",
+          "[devices][mouse]") {
+    HandOrders orders;
+    MouseHandle handle({.orders = &orders});
+    orders.post({Vec3(0.01, 0.01, 0)});
+    const auto play = [&](const Vec3& waiting_m) {
+        for (int i = 0; i < 500; ++i) {
+            handle.show({}, waiting_m);
+            handle.write(Vec3::Zero());
+        }
+        return handle.read().position_m;
+    };
+    CHECK((play({0.5 * MouseHandle::waits_from_m, 0, 0}) - Vec3(0.01, 0.01, 0)).norm() < 1e-6);
+    // Along the waiting travel it waits; aside and back it goes.
+    orders.post({Vec3(0.02, 0.02, 0)});
+    const Vec3 aside = play({MouseHandle::waits_from_m, 0, 0});
+    CHECK((aside - Vec3(0.01, 0.02, 0)).norm() < 1e-6);
+    orders.post({Vec3::Zero()});
+    CHECK(play({MouseHandle::waits_from_m, 0, 0}).norm() < 1e-6);
 }
 
 TEST_CASE("a hand pulls no harder than it can, and a mouse that leaps is no hand that does",

@@ -84,6 +84,23 @@ TEST_CASE("a trace's other columns are passed over, and a line that was cut off"
     CHECK(rows[1].clutch);
 }
 
+TEST_CASE("a trace states the cap and the stops of the recorded device, else the scene's counts",
+          "[devices][played]") {
+    PlayedHandle handle({.rows = parse_trace(header.substr(0, header.size() - 1) +
+                                                 ",cap_N_per_m,at_stop\n0,0.3,0,0,1234.5,0\n"
+                                                 "0.001,0.3,0,0,1234.5,1\n",
+                                             "trace.csv"),
+                         .viscosity_N_s_per_m = 0.1});
+    CHECK(handle.spec().cap_N_per_m == 1234.5);
+    CHECK_FALSE(is_at_stop(handle.read(), handle.spec().half_workspace_m));
+    CHECK(is_at_stop(after(handle, 1), handle.spec().half_workspace_m));
+
+    PlayedHandle scripted(
+        {.rows = parse_script(header + "0,0.3,0,0\n", "hand.csv"), .viscosity_N_s_per_m = 0.1});
+    CHECK(scripted.spec().cap_N_per_m == 0);
+    CHECK(scripted.spec().viscosity_N_s_per_m == 0.1);
+}
+
 TEST_CASE("a reset begins a script anew while its clock runs on", "[devices][played]") {
     HandOrders orders;
     PlayedHandle handle = play(header + "0,0,0,0\n0.1,0.1,0,0\n", &orders);
@@ -116,7 +133,7 @@ TEST_CASE("what cannot be played is told with its line", "[devices][played]") {
     CHECK_THAT(told(header + "0,0,nan,0\n"), Contains("'nan' is not a number"));
     CHECK_THAT(told(header + "0,0,0,0\n0,0,0,0\n"),
                Contains("hand.csv:3: the time 0 s follows 0 s; expected ascending times"));
-    CHECK_THAT(told(header + "0,0,20,0\n"), Contains("20 m from the middle"));
+    CHECK_THAT(told(header + "0,0,2000,0\n"), Contains("2000 m from the middle"));
     CHECK_THAT(told("clutch," + header + "2,0,0,0,0\n"), Contains("clutch is 2"));
     CHECK_THAT(test::load_error_of([] { (void)read_script("/nowhere/hand.csv"); }),
                Contains("/nowhere/hand.csv"));

@@ -275,6 +275,148 @@ TEST_CASE("what is blended counts in the energy books", "[haptics][guarded][rela
     CHECK(guarded.state.energy_balance_J == Approx(by * (with - without)));
 }
 
+TEST_CASE("the relaxed stiffness decides the cap, the frozen one the law's own term",
+          "[haptics][guarded][relaxed]") {
+    // At rest, where eq. 3 falls into its notch but for its term of the stiffness.
+    GuardedSettings settings;
+    settings.displacement_law = RepairedDisplacementLaw({});
+    const Vec3 none = Vec3::Zero();
+    const Mat3 frozen = 30 * Mat3::Identity(), relaxed = 0.5 * Mat3::Identity();
+
+    const GuardedGain gain = guarded_gain(settings, none, frozen, relaxed);
+
+    const double law = displacement_gain(settings.displacement_law, 0, 30);
+    CHECK(law > 0.9 * displacement_gain(settings.displacement_law, 1e-9));
+    CHECK(gain.A_d == law);
+    CHECK(gain.felt_N_per_m == Approx(largest_felt(settings.force_law, none, relaxed) / gain.A_d));
+    // A relaxed stiffness that is felt as more than the cap raises A_d to it.
+    const double soft = guarded_gain(settings, none, frozen, frozen).A_d;
+    CHECK(soft == Approx(largest_felt(settings.force_law, none, frozen) / settings.cap_N_per_m));
+    CHECK(soft > gain.A_d);
+}
+
+TEST_CASE("the gain of a relaxed model is that of the frozen surroundings beyond its region",
+          "[haptics][guarded][relaxed]") {
+    const Pair pair;
+    Guarded guarded(relaxed_contact(pair, 3.75, 0.1, 0.05));
+    guarded.settings.displacement_law = ConstantDisplacementLaw{0.005e9};
+    const double within = guarded.move(Vec3::Zero()).displacement_gain;
+    CHECK(within == Approx(0.005e9));
+
+    // The clearance lets it go beyond; there the frozen stiffness is felt.
+    guarded.state.molecule.place_angstrom.x() = 3.75 - 0.06;
+    take_local_contact(guarded.contact, guarded.state);
+    const GuardedTick beyond = guarded.move(Vec3::Zero());
+    const double felt = largest_felt(guarded.settings.force_law, beyond.force_newton,
+                                     guarded.state.at_place.stiffness_N_per_m);
+    REQUIRE(felt > 1.1 * guarded.settings.cap_N_per_m * within);
+    CHECK(beyond.displacement_gain == Approx(felt / guarded.settings.cap_N_per_m).epsilon(0.01));
+}
+
+TEST_CASE("while the molecule waits for its model the travel is kept, felt, and followed later",
+          "[haptics][guarded][relaxed]") {
+    const Pair pair;
+    Guarded guarded(relaxed_contact(pair, 3.8, 0, 0.05));
+    guarded.settings.displacement_law = ConstantDisplacementLaw{0.25e9};
+    guarded.settings.damping_N_s_per_m = 0;
+    double clipped_m = 0;
+    const auto move = [&](double by) {
+        const GuardedTick tick = guarded.move(Vec3(by, 0, 0));
+        clipped_m += tick.clipped_m.norm();
+        return tick;
+    };
+    for (int i = 0; i < 100; ++i) (void)move(-2e-4);
+    const double stood = guarded.x();
+    const double kept = guarded.state.waiting_m.norm();
+    CHECK(stood < 3.8);
+    CHECK(kept > 0.005);
+    CHECK(kept <= most_waiting_m * (1 + 1e-12));
+    CHECK(guarded.state.overtravel_m.isZero());
+    // Handle travel is what the molecule went, what waits, and what was clipped: nothing is lost.
+    const double gone = (3.8 - stood) * 1e-10 * 0.25e9;
+    CHECK(gone + kept + clipped_m == Approx(0.02).epsilon(1e-6));
+    // The force of the molecule is still told from the spring.
+    for (int i = 0; i < 100; ++i) (void)move(0);
+    guarded.state.energy_balance_J = 0;  // what the attraction did for nothing would be taken back
+    const GuardedTick still = move(0);
+    const double law = hand_force(guarded.settings.force_law, still.force_newton.x());
+    CHECK(std::abs(still.hand_newton.x() - law) == Approx(waiting_N_per_m * kept).epsilon(1e-6));
+    CHECK(waiting_N_per_m * kept <= most_waiting_newton);
+
+    // More is clipped, and counted.
+    const double before = clipped_m;
+    for (int i = 0; i < 200; ++i) (void)move(-2e-4);
+    CHECK(guarded.state.waiting_m.norm() == Approx(most_waiting_m));
+    CHECK(clipped_m - before > 0.02);
+
+    // Its model has come: it follows, by no more than the limits of a step each tick.
+    double last = guarded.x(), longest = 0;
+    for (int i = 0; i < 3000 && guarded.state.waiting_m.norm() > 1e-9; ++i) {
+        if (i % 10 == 0) {
+            guarded.contact = relaxed_contact(pair, guarded.x(), 0, 0.05);
+            take_local_contact(guarded.contact, guarded.state);
+        }
+        (void)move(0);
+        longest = std::max(longest, std::abs(guarded.x() - last));
+        last = guarded.x();
+    }
+    CHECK(guarded.state.waiting_m.norm() < 1e-9);
+    CHECK(longest < 0.05);
+    CHECK(last < stood - 0.1);
+}
+
+TEST_CASE("travel that waits is undone first, and stays while the hand clutches",
+          "[haptics][guarded][relaxed]") {
+    Guarded guarded(relaxed_contact(Pair(), 3.8, 0, 0.02));
+    guarded.settings.displacement_law = ConstantDisplacementLaw{0.25e9};
+    for (int i = 0; i < 100; ++i) (void)guarded.move(Vec3(-2e-4, 0, 0));
+    const Vec3 kept = guarded.state.waiting_m;
+    REQUIRE(kept.norm() > 0.01);
+    const double stood = guarded.x();
+
+    for (int i = 0; i < 400; ++i)
+        (void)step_guarded(guarded.settings, guarded.contact, Vec3::Zero(), {Vec3(1e-3, 0, 0)},
+                           true, guarded.state);
+    CHECK((guarded.state.waiting_m - kept).norm() < 1e-6);
+
+    for (int i = 0; i < 45; ++i) (void)guarded.move(Vec3(2e-4, 0, 0));
+    CHECK(guarded.state.waiting_m.norm() == Approx(kept.norm() - 45 * 2e-4).epsilon(1e-3));
+    CHECK(guarded.x() == Approx(stood).epsilon(1e-6));
+}
+
+TEST_CASE("a closed path with travel that waits gives the hand no energy",
+          "[haptics][guarded][relaxed]") {
+    // Out against a spring faster than models come, a rest, and back; models every `period` ticks.
+    const Pair pair;
+    const int period = GENERATE(1, 14, 83), ticks = GENERATE(50, 400);
+    const double spring = GENERATE(2.0, 15.0);  // N/m of the relaxed surroundings
+    CAPTURE(period, ticks, spring);
+    Guarded guarded(relaxed_contact(pair, 5, spring, 0.1));
+    guarded.settings.displacement_law = ConstantDisplacementLaw{0.0416e9};
+    const double rest = 5;
+    double work_J = 0;
+    Vec3 force = Vec3::Zero();
+    int tick = 0;
+    const auto move = [&](double by) {
+        work_J += force.x() * by;
+        if (tick++ % period == 0) {
+            guarded.contact = relaxed_contact(pair, guarded.x(), spring, 0.1);
+            guarded.contact.model.period_s = 1e-3 * period;
+            guarded.contact.model.force_newton = {-spring * (guarded.x() - rest) * 1e-10, 0, 0};
+            take_local_contact(guarded.contact, guarded.state);
+        }
+        force = guarded.move(Vec3(by, 0, 0)).hand_newton;
+    };
+    for (int path = 0; path < 3; ++path) {
+        const double by = 0.02 / ticks;
+        for (int i = 0; i < ticks; ++i) move(by);
+        for (int i = 0; i < 500; ++i) move(0);
+        for (int i = 0; i < ticks; ++i) move(-by);
+        for (int i = 0; i < 500; ++i) move(0);
+        CHECK(work_J < 1e-3);
+    }
+}
+
 TEST_CASE("how much A_d is raised for the cap is told", "[haptics][guarded]") {
     GuardedSettings settings;
     settings.force_law = ConstantForceLaw{2e9};
@@ -493,6 +635,9 @@ TEST_CASE("the cap is what a device keeps calm, and what the damping pays for",
     CHECK(guarded_cap(0.3, 0, 1) == Approx(100));
     CHECK(guarded_cap(0, 0, 1) == 1);
     CHECK(guarded_cap(0.1, 2, 7) == Approx(140));  // 0.5 x 2.1/7.5 ms
+    CHECK(guarded_cap(DeviceSpec{.name = "a", .viscosity_N_s_per_m = 0.1}, 0.5, 1) == Approx(200));
+    CHECK(guarded_cap(DeviceSpec{.name = "a", .viscosity_N_s_per_m = 0.1, .cap_N_per_m = 1234}, 0.5,
+                      1) == 1234);
     CHECK(guarded_damping(0.5, 0.045, 1) == 0.5);
     // 2 ms of filter and 2.5 ms: pi/6 x 0.01/4.5 ms.
     CHECK(guarded_damping(5, 0.01, 1) == Approx(1.1636).epsilon(1e-4));

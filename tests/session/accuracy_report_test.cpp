@@ -23,6 +23,7 @@ AccuracyLog log_of(const std::optional<std::array<double, 2>>& range_pN,
     ServoSettings servo;
     servo.guarded.emplace();
     servo.guarded->damping_N_s_per_m = 0;
+    servo.guarded->device_cap_N_per_m = 100.0 / 3;
     servo.guarded->force_law = PerceptualForceLaw::for_range(20e-12, 3e-9);
     return {scene, servo};
 }

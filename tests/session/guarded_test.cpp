@@ -273,7 +273,7 @@ public:
     DeviceReading read() noexcept override {
         return {static_cast<double>(tick_) * servo_tick_s, Vec3(x_m_, 0, 0), 0, true};
     }
-    void show(const ContactModel& contact) noexcept override {
+    void show(const ContactModel& contact, const Vec3& /*waiting_m*/) noexcept override {
         place_angstrom_ = contact.molecule.place_angstrom.x();
     }
     void write(const Vec3& force_newton) noexcept override {

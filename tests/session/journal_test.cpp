@@ -24,16 +24,17 @@ const HandDevice omni{{.name = "an \"Omni\"\n",
                        .peak_force_newton = 3.3,
                        .continuous_force_newton = 0.88,
                        .viscosity_N_s_per_m = 0.1,
+                       .cap_N_per_m = 1234.5,
                        .half_workspace_m = {0.08, 0.06, 0.035}},
                       true};
 
 const std::string hand_line =
     R"(hand {"name":"a","rate_hz":1000,"peak_force_N":3,"continuous_force_N":1,)"
-    R"("viscosity_N_s_per_m":0,"half_workspace_m":[1,1,1],"is_real":false,"stands_still":true})"
+    R"("viscosity_N_s_per_m":0,"cap_N_per_m":1000,"half_workspace_m":[1,1,1],"is_real":false,"stands_still":true})"
     "\n";
 
 Journal parse(const std::string& lines) {
-    return parse_journal(fmt::format("{}2.0\n{}{}", journal_mark, hand_line, lines), "journal.txt");
+    return parse_journal(fmt::format("{}2.1\n{}{}", journal_mark, hand_line, lines), "journal.txt");
 }
 
 std::string error_of(const std::string& lines) {
@@ -91,6 +92,7 @@ TEST_CASE("a journal reads as it was written, to the last bit", "[session][journ
     REQUIRE(journal.devices.size() == 2);
     CHECK(journal.devices[1].spec.name == omni.spec.name);
     CHECK(journal.devices[1].spec.half_workspace_m == omni.spec.half_workspace_m);
+    CHECK(journal.devices[1].spec.cap_N_per_m == 1234.5);
     CHECK(journal.devices[1].spec.is_real);
     CHECK(journal.devices[1].stands_still);
     REQUIRE(journal.ticks.size() == 2);
@@ -174,7 +176,7 @@ TEST_CASE("a journal states its version, and of the one before edits have old na
     const auto error_of_version = [&](const std::string& version, const std::string& lines) {
         return test::load_error_of([&] { (void)read(version, lines); });
     };
-    CHECK(JournalWriter(std::span(&omni, 1)).take().starts_with("# Palpa journal 2.0\n"));
+    CHECK(JournalWriter(std::span(&omni, 1)).take().starts_with("# Palpa journal 2.1\n"));
     for (const char* const before : {"1", "1.0"}) {
         const Journal journal = read(before, edit);
         const auto& look = std::get<AppearanceEdit>(command_of<EditDescription>(journal, 0).action);
@@ -182,16 +184,39 @@ TEST_CASE("a journal states its version, and of the one before edits have old na
         CHECK(journal.version == FileVersion{1, 0});
         CHECK(journal.notes.empty());
     }
-    CHECK_THAT(error_of_version("2.0", edit), Contains("is now 'edits[1].appearance.colour'"));
+    CHECK_THAT(error_of_version("2.1", edit), Contains("is now 'edits[1].appearance.colour'"));
     const Journal newer = read("2.7", "p 1\n");
     REQUIRE(newer.notes.size() == 1);
-    CHECK_THAT(newer.notes[0], Contains("journal format 2.7 is newer than 2.0"));
+    CHECK_THAT(newer.notes[0], Contains("journal format 2.7 is newer than 2.1"));
     CHECK_THAT(error_of_version("2.7", "q 1\n"), Contains("'q' is not a kind of line") &&
                                                      Contains("a newer Palpa, since the journal"));
     CHECK_THAT(error_of_version("3.0", "p 1\n"),
                Contains("journal.txt:1:1: journal format 3.0 is newer than this program"));
     CHECK_THAT(error_of_version("two", "p 1\n"),
-               Contains("is not a journal; expected # Palpa journal 2.0"));
+               Contains("is not a journal; expected # Palpa journal 2.1"));
+}
+
+TEST_CASE("devices of a journal before 2.1 have the cap that the scene gave them",
+          "[session][journal][format]") {
+    SceneDescription scene;
+    scene.device.viscosity_N_s_per_m = 0.25;
+    const auto read = [&](const std::string& version) {
+        Journal journal =
+            parse_journal(fmt::format("{}{}\n{}d 1 {{\"slot\":0,{}", journal_mark, version,
+                                      hand_line, hand_line.substr(hand_line.find('"'))),
+                          "journal.txt");
+        complete_caps(scene, journal);
+        return journal;
+    };
+    for (const char* const before : {"1.0", "2.0"}) {
+        const Journal journal = read(before);
+        CHECK(journal.devices[0].spec.cap_N_per_m == 0);
+        CHECK(journal.devices[0].spec.viscosity_N_s_per_m == 0.25);
+        CHECK(std::get<DeviceEvent>(journal.events.at(0).event).device.spec.viscosity_N_s_per_m ==
+              0.25);
+    }
+    CHECK(read("2.1").devices[0].spec.cap_N_per_m == 1000);
+    CHECK(read("2.1").devices[0].spec.viscosity_N_s_per_m == 0);
 }
 
 TEST_CASE("what a journal cannot hold is refused with its line", "[session][journal]") {

@@ -36,6 +36,38 @@ TEST_CASE("the extremes of a run are kept with their signs", "[session][statisti
     CHECK_FALSE(summary.ripple.has_value());
 }
 
+TEST_CASE("the way of a handle is counted by strokes, without tremor and clutch",
+          "[session][statistics]") {
+    Statistics statistics(1e-3);
+    ServoTick tick;
+    tick.reading.valid = true;
+    double x_m = 0;
+    const auto move = [&](int ticks, double by_m, bool is_clutched) {
+        for (int i = 0; i < ticks; ++i) {
+            x_m += by_m;
+            // Encoder steps to and fro.
+            tick.reading.position_m = {x_m, i % 2 == 0 ? 0.055e-3 : 0, 0};
+            tick.clutched = is_clutched;
+            statistics.add(tick);
+        }
+    };
+    move(200, 1e-4, false);  // 2 cm
+    move(100, -2e-4, true);  // back under the clutch
+    move(1000, 0, false);    // a rest is no stroke
+    move(100, 1e-4, false);  // 1 cm
+    tick.clipped_m = {0, 3e-3, 4e-3};
+    tick.is_at_stop = true;
+    move(2, 0, false);
+    move(1, 0, true);  // under the clutch a stop does not matter
+
+    const HandTravel travel = statistics.summary().travel;
+
+    CHECK(travel.handle_m == Approx(0.03).margin(1.2e-3));
+    CHECK(travel.strokes == 2);
+    CHECK(travel.lost_m == Approx(3 * 5e-3));
+    CHECK(travel.at_stop_s == Approx(0.002));
+}
+
 TEST_CASE("in space a felt force is a norm, which neither attracts nor repels",
           "[session][statistics]") {
     Statistics statistics(1e-3);

@@ -2,14 +2,15 @@
 does not."""
 import unittest
 
-from lessons_test import LONG, check_that_it_is_not_done, check_that_the_operator_does_it, lessons
+from lessons_test import DEVICES, LONG, check_that_it_is_not_done, check_that_the_operator_does_it, lessons
 
 
 class LongLessons(unittest.TestCase):
     def test_the_operator_does_every_step(self):
         for lesson in lessons():
-            if lesson["name"] in LONG:
-                check_that_the_operator_does_it(self, lesson)
+            for device in DEVICES:
+                if lesson["name"] in LONG:
+                    check_that_the_operator_does_it(self, lesson, device)
 
     def test_a_hand_that_knows_nothing_does_none(self):
         for name in LONG:

@@ -36,9 +36,13 @@ def check_that_it_is_not_done(test, name):
                 test.assertFalse(any(done), report)
 
 
-def check_that_the_operator_does_it(test, lesson):
-    with test.subTest(lesson=lesson["name"]):
-        code, report = play(lesson["name"])
+# A workspace that needs many clutches, and a person at the mouse.
+DEVICES = ("omni", "small", "mouse")
+
+
+def check_that_the_operator_does_it(test, lesson, device):
+    with test.subTest(lesson=lesson["name"], device=device):
+        code, report = play(lesson["name"], "--by", device)
         test.assertEqual(code, 0, report)
         test.assertTrue(report["done"])
         test.assertEqual(len(report["steps"]), lesson["steps"])
@@ -78,8 +82,9 @@ class Lessons(unittest.TestCase):
 
     def test_the_operator_does_every_step(self):
         for lesson in lessons():
-            if lesson["name"] not in LONG:
-                check_that_the_operator_does_it(self, lesson)
+            for device in DEVICES:
+                if lesson["name"] not in LONG:
+                    check_that_the_operator_does_it(self, lesson, device)
 
     def test_a_hand_that_knows_nothing_does_none(self):
         for lesson in lessons():
@@ -97,6 +102,8 @@ class Lessons(unittest.TestCase):
         for arguments, message in ((["play", "watr"], "no lesson 'watr'; expected one of"),
                                    (["play"], "needs a lesson"),
                                    (["play", "water", "--idle"], "--headless"),
+                                   (["play", "water", "--headless", "--by", "hand"],
+                                    "omni, small"),
                                    (["ply", "water"], "play")):
             with self.subTest(arguments=arguments):
                 result = palpa("lessons", *arguments)

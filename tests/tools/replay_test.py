@@ -122,11 +122,11 @@ class Replay(unittest.TestCase):
     def test_recordings_state_their_format_and_newer_ones_are_refused_or_noted(self):
         self.record("--seconds", "0.1", WATER)
         session = self.folder / "session.toml"
-        text, line = session.read_text(), "# Recording format 2.0\n"
+        text, line = session.read_text(), "# Recording format 2.1\n"
         self.assertEqual(text.count(line), 1)
         self.assertIn('\nformat = "2.0"\n', text)
         versions = json.loads((self.folder / "summary.json").read_text())["versions"]
-        self.assertEqual((versions["scene_format"], versions["recording_format"]), ("2.0", "2.0"))
+        self.assertEqual((versions["scene_format"], versions["recording_format"]), ("2.0", "2.1"))
         session.write_text(text.replace(line, "# Recording format 3.0\n"))
         refused = palpa("replay", self.folder, "--verify")
         self.assertEqual(refused.returncode, 2)
@@ -145,7 +145,7 @@ class Replay(unittest.TestCase):
         noted = palpa("replay", self.folder, "--verify")
         self.assertEqual(noted.returncode, 0, noted.stderr)
         self.assertIn("note: ", noted.stderr)
-        self.assertIn("recording format 2.5 is newer than 2.0", noted.stderr)
+        self.assertIn("recording format 2.5 is newer than 2.1", noted.stderr)
 
     def test_a_force_that_was_another_is_told_with_its_place(self):
         self.record("--seconds", "1", WATER)

@@ -24,6 +24,7 @@
 #include "tools/bench/engine.h"
 #include "tools/bench/kernel.h"
 #include "tools/bench/meshes.h"
+#include "tools/bench/mouse.h"
 #include "tools/bench/repeat_world.h"
 #include "tools/bench/representations.h"
 #include "tools/bench/row.h"
@@ -194,6 +195,11 @@ int bench_command(const BenchOptions& options) {
         const StageFunction on_stage = progress.stages();
         if (options.kernel) {
             bench_kernels(name, scene, rows);
+            continue;
+        }
+        if (options.mouse) {
+            bench_mouse(name + "/" + scene.file.stem().string(), scene, options.runs,
+                        options.longest_s, rows);
             continue;
         }
         if (options.servo) {

@@ -155,6 +155,23 @@ void add_bench(CLI::App& program, ProgramCommand& chosen) {
         ->excludes("--tree")
         ->excludes("--servo")
         ->needs("scenes");
+    CLI::Option* const mouse =
+        bench
+            .add_flag("--mouse", options.mouse,
+                      "instead: seconds in which an emulated person at the mouse draws what is in "
+                      "hand out of its pocket, in real time without a window")
+            ->excludes("--render")
+            ->excludes("--kernel")
+            ->excludes("--tree")
+            ->excludes("--servo")
+            ->excludes("--window")
+            ->needs("scenes");
+    bench.add_option("--runs", options.runs, "number of sessions of --mouse (default 5)")
+        ->check(in_range(1, 1000))
+        ->needs(mouse);
+    bench.add_option("--longest", options.longest_s, "longest session of --mouse, s (default 180)")
+        ->check(in_range(1.0, 1e4))
+        ->needs(mouse);
     bench
         .add_flag("--engine", options.engine,
                   "time the cost of a frame of a remote engine for its client")

@@ -5,6 +5,7 @@
 #include "experiments/play_lesson.h"
 #include "scene/find_scene.h"
 #include "scene/read_scene.h"
+#include "tools/commands/choice.h"
 #include "tools/commands/command.h"
 #include "tools/commands/progress.h"
 #include "tools/commands/run.h"
@@ -25,6 +26,7 @@ namespace {
 struct LessonsCommand {
     std::string action, name;
     bool headless = false, idle = false, random = false, json = false;
+    LessonDevice device = LessonDevice::Omni;
     std::uint64_t seed = 1;
 };
 
@@ -97,12 +99,19 @@ void print_steps(const SceneDescription& scene, const LessonResult& result) {
                    wanted_by(step));
     }
     const auto done = std::ranges::count_if(result.steps, &LessonStepResult::is_done);
-    fmt::print("{} of {} steps done in {:.1f} s\n", done, result.steps.size(), result.seconds);
+    const HandTravel& travel = result.travel;
+    fmt::print(
+        "{} of {} steps done in {:.1f} s; {:.1f} cm of the handle in {} strokes, {:.1f} cm lost\n",
+        done, result.steps.size(), result.seconds, 100 * travel.handle_m, travel.strokes,
+        100 * travel.lost_m);
 }
 
 void print_steps_as_json(const LessonEntry& lesson, const LessonResult& result) {
     nlohmann::ordered_json report{
         {"name", lesson.name}, {"done", result.is_done()}, {"seconds", result.seconds}};
+    report["travel"] = {{"handle_m", result.travel.handle_m},
+                        {"lost_m", result.travel.lost_m},
+                        {"strokes", result.travel.strokes}};
     for (std::size_t i = 0; i < result.steps.size(); ++i) {
         const LessonStepDescription& step = lesson.scene.lesson[i];
         const LessonStepResult& of = result.steps[i];
@@ -121,7 +130,7 @@ int play_headless(const LessonsCommand& command, const LessonEntry& lesson) {
     if (command.random) player = LessonPlayer::Random;
     ProgressLine progress(!command.json);
     const LessonResult result =
-        play_lesson(lesson.scene, player, command.seed, progress.shares("steps"));
+        play_lesson(lesson.scene, player, command.device, command.seed, progress.shares("steps"));
     progress.wipe();
     if (command.json) {
         print_steps_as_json(lesson, result);
@@ -169,7 +178,8 @@ void add_lessons(CLI::App& program, ProgramCommand& chosen) {
         "lessons", "List and open guided lessons, step by step with checks");
     LessonsCommand& command = own_options<LessonsCommand>(lessons, chosen, lessons_command);
     describe(lessons, "Feel",
-             {"palpa lessons", "palpa lessons play water", "palpa lessons play water --headless"},
+             {"palpa lessons", "palpa lessons play water", "palpa lessons play water --headless",
+              "palpa lessons play water --headless --by mouse"},
              "Exit code of --headless: 0 if every step is done, else 1.");
     lessons.add_option("action", command.action, "'play' (default: list the lessons)")
         ->check(CLI::IsMember({"play"}));
@@ -183,6 +193,16 @@ void add_lessons(CLI::App& program, ProgramCommand& chosen) {
         .add_flag("--random", command.random, "replace the operator by a hand that moves at random")
         ->needs(headless)
         ->excludes(idle);
+    lessons
+        .add_option_function<std::string>(
+            "--by",
+            [&command](const std::string& name) {
+                command.device =
+                    static_cast<LessonDevice>(choice_called("--by", name, lesson_device_names));
+            },
+            "device of the operator: omni (default), small (a workspace of 5 cm) or mouse")
+        ->needs(headless)
+        ->type_name("DEVICE");
     add_seed_option(lessons, command.seed);
     lessons.add_flag("--json", command.json, "print as JSON");
 }

@@ -58,6 +58,17 @@ void remember_scene(const fs::path& scene, PreferencesFile& preferences) {
     }
 }
 
+// The signs of the hand are explained once to each user.
+void remember_hand_explained(PreferencesFile& preferences) {
+    if (!preferences.can_keep()) return;
+    Preferences chosen = preferences.now();
+    chosen.hand_explained = true;
+    try {
+        preferences.keep(chosen);
+    } catch (const LoadError&) {  // they are explained again next time
+    }
+}
+
 TextScaleChoice build_text_scale(PreferencesFile& preferences) {
     return {.scale = preferences.now().text_scale.value_or(1),
             .remember = [&preferences](double scale) {
@@ -226,6 +237,8 @@ std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
          .pads = &devices.pads(),
          .devices = options.play ? DeviceMenu() : devices.menu(),
          .sound = build_sound_choice(options, preferences),
+         .is_hand_explained = preferences.now().hand_explained,
+         .remember_hand_explained = [&] { remember_hand_explained(preferences); },
          .save = save,
          .save_for_crash = [&](const SceneState& state) { recovery.save(as_set(scene, state)); },
          .notice = devices.notice(),

@@ -2,6 +2,7 @@
 
 #include "core/text.h"
 #include "core/units.h"
+#include "devices/mouse_handle.h"
 #include "haptics/gains.h"
 #include "session/accuracy_report.h"
 #include "session/plan_hand.h"
@@ -99,6 +100,24 @@ void print_gains(const SceneDescription& scene, const World& world, double dista
         cm.z(), cm.x(), cm.y(), cm.z());
 }
 
+// The stiffness caps of the scene's device and of the mouse.
+void print_cap(const SceneDescription& scene, const World& world) {
+    const auto cap_with = [&](const DeviceSpec& device) {
+        return build_servo_settings(scene, world, device)
+            .guarded.value_or(GuardedSettings{})
+            .device_cap_N_per_m;
+    };
+    if (!world.resource<Coupling>().is_guarded) return;
+    MouseHandleSettings mouse = mouse_handle_of(hand_model(scene.hand.grip));
+    mouse.delay_ticks = static_cast<int>(scene.device.servo_delay_ticks);
+    fmt::print(
+        "  cap         {:.4g} N/m on the hand with the scene's device ({:.3g} N s/m), {:.4g} N/m "
+        "by "
+        "mouse; other devices by their own viscosity\n",
+        cap_with(describe_emulated_device(scene)), scene.device.viscosity_N_s_per_m,
+        cap_with(MouseHandle(mouse).spec()));
+}
+
 // Where it began, of one that was relaxed.
 void print_relaxed(const World& world, const RelaxReport& r) {
     const ContactModel start = local_contact_of(world).model;
@@ -184,6 +203,7 @@ void print_line(const SceneDescription& scene, const World& world, ProgressLine&
         "N/m\n",
         stiffest.newton_per_metre, along, stiffest.angstrom, calm);
     print_gains(scene, world, stiffest.angstrom);
+    print_cap(scene, world);
 }
 
 namespace {
@@ -214,6 +234,23 @@ void print_accuracy(const AccuracyReport& f) {
 
 }  // namespace
 
+namespace {
+
+void print_travel(const std::string& title, const HandTravel& travel) {
+    const double moved_cm = 100 * travel.handle_m, lost_cm = 100 * travel.lost_m;
+    fmt::print("  {} {:.1f} cm of the handle in {} {}; {:.1f} cm lost ({:.1f} %)\n", title,
+               moved_cm, travel.strokes, travel.strokes == 1 ? "stroke" : "strokes", lost_cm,
+               moved_cm > 0 ? 100 * lost_cm / moved_cm : 0.0);
+    if (travel.at_stop_s > 0) {
+        fmt::print(
+            "              for {:.1f} s the handle was at its end: release, move back, press "
+            "again\n",
+            travel.at_stop_s);
+    }
+}
+
+}  // namespace
+
 void print_summary(const SceneDescription& scene, const Summary& s) {
     fmt::print("{}: {} s, mode {}, T_s = {} ms, {} hand, friction {} N, stroke {}\n",
                printable(scene.title), scene.seconds,
@@ -240,6 +277,7 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
     fmt::print("  net work    {:+.4f} J on the hand\n", s.net_work_J);
     for (std::size_t i = 0; i < s.other_hands.size(); ++i) {
         const Summary& other = s.other_hands[i];
+        print_travel(fmt::format("travel of {}", i + 2), other.travel);
         fmt::print("  hand {}      at most {:.3f} N, net work {:+.4f} J", i + 2,
                    other.largest_felt_N, other.net_work_J);
         if (scene.engine) {
@@ -262,6 +300,8 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
                 "; its nearest heavy atom there is {:.2f} Å away\n              (closest on the "
                 "way {:.2f} Å)",
                 j.clearance, j.closest);
+            if (j.free_s)
+                fmt::print("; free of others by {} Å after {:.1f} s", free_angstrom, *j.free_s);
         }
         fmt::print("; at the end rms displacement {:.2f} Å, of the backbone around it {:.2f} Å\n",
                    j.last_rmsd, j.last_backbone);
@@ -281,6 +321,7 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
             s.engine->frames, s.engine->frames_per_s, s.engine->delay_ms, s.engine->interruptions);
     }
     if (s.relaxation) print_relaxation(*s.relaxation);
+    print_travel("travel     ", s.travel);
     fmt::print("  clipping    {:.1f} % of the time\n", 100 * s.clamped_share);
     fmt::print("  step        {:.2f} µs median, {:.2f} µs p99 of {} steps\n", s.step_median_us,
                s.step_p99_us, s.steps);

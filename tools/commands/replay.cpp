@@ -140,7 +140,8 @@ void check_has_rows(const TraceCheck& check, const std::filesystem::path& folder
 // What people did in a window.
 int replay_journal(const ReplayOptions& options, const SceneDescription& scene) {
     const std::filesystem::path file = options.recording / "journal.txt";
-    const Journal journal = parse_journal(read_text_file(file), file.string());
+    Journal journal = parse_journal(read_text_file(file), file.string());
+    complete_caps(scene, journal);
     const std::size_t recorded =
         journal.ticks.size() - journal.first_recorded.value_or(journal.ticks.size());
     TraceCheck check(options.recording, recorded, scene.every, journal.devices.size());

@@ -26,6 +26,6 @@ std::string_view real_time_remedy() noexcept {
            "/etc/security/limits.d/70-palpa.conf, be in the group plugdev, and log in again";
 }
 
-void lower_priority() noexcept { (void)!nice(5); }
+void lower_priority(int steps) noexcept { (void)!nice(steps); }
 
 }  // namespace palpa

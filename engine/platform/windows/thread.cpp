@@ -17,7 +17,7 @@ bool ask_for_locked_memory() noexcept { return false; }
 
 std::string_view real_time_remedy() noexcept { return {}; }
 
-void lower_priority() noexcept {
+void lower_priority(int /*steps*/) noexcept {
     (void)SetThreadPriority(GetCurrentThread(), THREAD_PRIORITY_BELOW_NORMAL);
 }
 
