@@ -22,7 +22,7 @@ struct PlayedRow {
     Vec3 handle_m = Vec3::Zero();
     Vec3 turn_rad = Vec3::Zero();  // rotation vector
     bool clutch = false;           // pressed until the next row
-    // Of the recorded device: its stiffness cap, 0 if not stated; and whether it was at a stop.
+    // The recorded device's stiffness cap (0: not stated), and whether it was at a stop.
     double cap_N_per_m = 0;
     bool at_stop = false;
 };

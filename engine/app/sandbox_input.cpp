@@ -210,8 +210,8 @@ void Sandbox::keep_in_sight(double seconds) {
     pan(camera_, -share * right, -share * down, static_cast<float>(size.height));
 }
 
-// Where the hand wants what it holds, Å: by what mouse or keys are ahead of the handle, and by the
-// travel that waits.
+// Returns the place (Å) to which a hand wants its molecule: ahead of it by the lead of mouse or
+// keys over the handle, and by the travel that waits.
 Vec3 Sandbox::find_wish(std::size_t slot) const {
     const WindowHand& hand = hands_[slot];
     Vec3 wish = frame_.hands[slot].grabbed_angstrom;

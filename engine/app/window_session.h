@@ -39,10 +39,10 @@ public:
 
     virtual ServoHealth servo_health() const noexcept { return {}; }
 
-    // Where a live hand wants the handle, m, and whether it presses the clutch.
+    // Sets the target of the handle (m) of a live hand, and whether the hand presses the clutch.
     virtual void move_hand(const Vec3& /*target_m*/, std::size_t /*slot*/, bool /*is_clutched*/) {}
 
-    // The path of what the first hand holds, where molecules move by themselves.
+    // Returns the path of the first hand's molecule; nothing if no molecule moves by itself.
     virtual std::optional<UnbindingPath> find_unbinding() { return {}; }
 
     // Puts another device in a hand's place; the one before is the caller's again. Throws

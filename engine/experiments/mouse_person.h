@@ -22,7 +22,7 @@ public:
 
     explicit MousePerson(std::uint64_t seed) : draws_(seed, 0) {}
 
-    // What the person does until the next frame.
+    // The person's input until the next frame.
     struct Motion {
         bool holds = false;         // Space
         float right = 0, down = 0;  // pixels
@@ -39,9 +39,9 @@ private:
     bool holds_ = false;
 };
 
-// The same person, who drags beyond the goal where the molecule stays behind, with the window's
-// part between: a frame every 33 ms, in which the view follows the molecule, turns what the person
-// does into orders for a mouse handle.
+// A MousePerson at a window: every 33 ms a frame, whose view follows the molecule, turns the
+// person's input into orders for a mouse handle. Drags beyond the goal if the molecule stays behind
+// it.
 class MousePersonAtWindow {
 public:
     MousePersonAtWindow(double reach_m, HandOrders& orders, std::uint64_t seed)

@@ -412,8 +412,9 @@ GuardedTick step_guarded(const GuardedSettings& settings, const LocalContactMode
     tick.cap_ratio = gain.cap_ratio;
     tick.felt_N_per_m = gain.felt_N_per_m;
     tick.molecule_per_handle = gain.inverse;
-    // What the stop held back is kept; what the limits cut off is not, but for what was kept, and
-    // where the molecule waits for its contact model.
+    // Keep the travel that the stop held back as overtravel. Clip the travel that the limits cut
+    // off, except for earlier overtravel; in flexible scenes keep that too, until the model is
+    // there.
     const Vec3 cut = (1 - share) * wanted;
     const Vec3 kept_cut = shortened(cut, state.overtravel_m.norm());
     const Vec3 held = share * wanted - followed + kept_cut;

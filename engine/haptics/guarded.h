@@ -69,10 +69,10 @@ struct GuardedGain {
     double cap_ratio = 1;      // largest A_d divided by that of the law (cap ratio)
 };
 
-// Where the molecule feels this force (N): the law's A_d, raised until the cap holds; as a tensor
-// along each eigenvector of sym(J K) by what that one needs, J the Jacobian of the force law and K
-// the stiffness that is felt (N/m). `stiffness`: of the frozen surroundings, for the law's own
-// term.
+// Returns the law's A_d at this force (N), raised until the stiffness felt is below the cap. A
+// tensor gain is raised along each eigenvector of sym(J K) on its own; J is the Jacobian of the
+// force law, K the stiffness that is felt (N/m). `stiffness`: of the frozen surroundings, for the
+// law's term.
 GuardedGain guarded_gain(const GuardedSettings& settings, const Vec3& force_newton,
                          const Mat3& stiffness, const Mat3& felt_stiffness) noexcept;
 // The same where the frozen stiffness is felt.

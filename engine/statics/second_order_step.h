@@ -48,8 +48,9 @@ struct HandPlace {
     Quat turn;
 };
 
-// Where renewals do not take place at once, a hand that waited at the end of a model's region is
-// faster than renewals. It gets a region so much wider: fewer renewals, each with a larger error.
+// The factor by which the region of a model is wider if the hand waited at the end of the last one,
+// because it is faster than renewals. Makes fewer renewals, each with a larger error. Only used if
+// renewals do not take place at once.
 inline constexpr double wider_for_fast_hands = 1.5;
 
 // State that steps carry over from one to the next.
