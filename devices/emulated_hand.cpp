@@ -28,6 +28,13 @@ void give_to_mouse(EmulatedOmniSettings& settings) {
     settings.friction_newton = 0;
 }
 
+MouseHandleSettings build_mouse(const EmulatedOmniSettings& omni, HandOrders* orders) {
+    MouseHandleSettings settings = mouse_handle_of(omni.hand);
+    settings.delay_ticks = omni.servo_delay_ticks;
+    settings.orders = orders;
+    return settings;
+}
+
 double mouse_reach_m(const EmulatedOmniSettings& settings) {
     const double stiffness = settings.hand ? settings.hand->stiffness_N_per_m : 0;
     return live_hand_newton / std::max(stiffness, 1.0);

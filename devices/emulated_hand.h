@@ -1,6 +1,7 @@
 // Builds the emulated device that a scene describes, and the hand on its handle.
 #pragma once
 #include "devices/emulated_omni.h"
+#include "devices/mouse_handle.h"
 #include "scene/description.h"
 
 #include <cstddef>
@@ -16,5 +17,9 @@ EmulatedOmniSettings build_emulated_omni(const SceneDescription& scene, const Ha
 // handle.
 void give_to_mouse(EmulatedOmniSettings& settings);
 double mouse_reach_m(const EmulatedOmniSettings& settings);
+
+// A mouse in the place of this device, in the same hand. `orders`: targets from a window, may be
+// null.
+MouseHandleSettings build_mouse(const EmulatedOmniSettings& omni, HandOrders* orders);
 
 }  // namespace palpa

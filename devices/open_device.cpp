@@ -3,6 +3,7 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "core/translate.h"
+#include "devices/emulated_hand.h"
 #include "devices/emulated_omni.h"
 #include "devices/force_dimension.h"
 #include "devices/force_joystick.h"
@@ -34,9 +35,7 @@ OpenedDevice open_emulated(const DeviceRequest& request) {
 }
 
 OpenedDevice open_mouse(const DeviceRequest& request) {
-    MouseHandleSettings settings = mouse_handle_of(request.emulated.hand);
-    settings.orders = request.orders;
-    settings.delay_ticks = request.emulated.servo_delay_ticks;
+    const MouseHandleSettings settings = build_mouse(request.emulated, request.orders);
     return {std::make_unique<MouseHandle>(settings),
             {{"window", CheckOutcome::Ok, "mouse and keys of the window", ""}}};
 }

@@ -94,7 +94,8 @@ private:
 class MouseHand final : public LessonHand {
 public:
     MouseHand(const EmulatedOmniSettings& settings, std::uint64_t seed)
-        : mouse_(settings_of(settings, orders_)), person_(mouse_reach_m(settings), orders_, seed) {}
+        : mouse_(build_mouse(settings, &orders_)),
+          person_(mouse_reach_m(settings), orders_, seed) {}
 
     Device& device() noexcept override { return mouse_; }
     void go_on(const std::vector<HandWaypoint>& path, bool takes_anew) override {
@@ -122,13 +123,6 @@ public:
     }
 
 private:
-    static MouseHandleSettings settings_of(const EmulatedOmniSettings& omni, HandOrders& orders) {
-        MouseHandleSettings settings = mouse_handle_of(omni.hand);
-        settings.delay_ticks = omni.servo_delay_ticks;
-        settings.orders = &orders;
-        return settings;
-    }
-
     HandOrders orders_;
     MouseHandle mouse_;
     MousePersonAtWindow person_;

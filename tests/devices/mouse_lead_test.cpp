@@ -4,11 +4,21 @@
 
 using namespace palpa;
 
-TEST_CASE("a way in the picture is A_d times as long for the handle, as far as the hand pulls",
-          "[devices][mouse]") {
+namespace {
+
+// A hand that pulls by 12 mm at most, with its handle at 0.1 m.
+MouseLead lead_at_rest() {
     MouseLead lead(0.012);
     lead.see(Vec3(0.1, 0, 0), 0.25e9);
     lead.rest();
+    return lead;
+}
+
+}  // namespace
+
+TEST_CASE("a way in the picture is A_d times as long for the handle, as far as the hand pulls",
+          "[devices][mouse]") {
+    MouseLead lead = lead_at_rest();
 
     lead.pull(Vec3(0, 0.2, 0));
     CHECK((lead.target_m() - Vec3(0.1, 0.2e-10 * 0.25e9, 0)).norm() < 1e-12);
@@ -29,9 +39,7 @@ TEST_CASE("a way in the picture is A_d times as long for the handle, as far as t
 
 TEST_CASE("a hand that clutches pulls at nothing, and takes hold where the handle is",
           "[devices][mouse]") {
-    MouseLead lead(0.012);
-    lead.see(Vec3(0.1, 0, 0), 0.25e9);
-    lead.rest();
+    MouseLead lead = lead_at_rest();
     lead.pull(Vec3(0.2, 0, 0));
     lead.engage();  // it holds: nothing changes
     CHECK(lead.ahead_m().norm() == Approx(0.005));

@@ -53,10 +53,7 @@ MousePlay play_mouse(const SceneDescription& scene, const EmulatedOmniSettings& 
                      const Vec3& direction, double longest_s, std::uint64_t seed) {
     using Clock = std::chrono::steady_clock;
     HandOrders orders;
-    MouseHandleSettings settings = mouse_handle_of(hand.hand);
-    settings.delay_ticks = hand.servo_delay_ticks;
-    settings.orders = &orders;
-    MouseHandle mouse(settings);
+    MouseHandle mouse(build_mouse(hand, &orders));
     LiveSession session(scene, {}, mouse, &orders);
     Statistics statistics(servo_tick_s);
     MousePersonAtWindow person(mouse_reach_m(hand), orders, seed);
