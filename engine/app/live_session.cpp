@@ -227,10 +227,11 @@ void LiveSession::begin_recording(const std::filesystem::path& folder, bool over
 }
 
 void LiveSession::end_recording() {
+    const std::optional<UnbindingPath> unbinding = find_unbinding();
     const std::lock_guard lock(recorder_mutex_);
     trajectory_queue_.end();
     record_what_happened();
-    recorder_.end();
+    recorder_.end(unbinding);
     if (recording_problem_.empty()) return;
     throw LoadError({"recording"}, std::exchange(recording_problem_, {}));
 }
@@ -475,7 +476,7 @@ void LiveSession::run_recorder() {
             record_what_happened();
             if (is_last && recorder_.is_recording()) {
                 try {
-                    recorder_.end();
+                    recorder_.end(simulation_.unbinding());  // whose thread has ended
                 } catch (const LoadError& error) {
                     recording_problem_ = error.what();
                 }

@@ -207,6 +207,15 @@ Vec3 find_remainder(const GuardedGain& gain, const GuardedState& state) noexcept
     return units::angstrom_per_metre * ((mean - state.went_with) * state.stepped_m);
 }
 
+// The force on the molecule with this rest of the old model's. Where everything follows, atoms that
+// follow a fast hand linearly can come on each other, so no more counts than the force at which a
+// molecule stops.
+Vec3 force_with(const GuardedSettings& settings, bool is_relaxed, const GuardedState& state,
+                const Vec3& residual_newton) noexcept {
+    const Vec3 force = state.at_place.force_newton + residual_newton;
+    return is_relaxed ? shortened(force, settings.stop_newton) : force;
+}
+
 // How the old model's force goes over into the new one's. Where everything follows, `most_blended`
 // limits what the handle feels of that in a tick.
 void update_blend(const GuardedSettings& settings, bool is_relaxed, GuardedState& state) noexcept {
@@ -215,7 +224,7 @@ void update_blend(const GuardedSettings& settings, bool is_relaxed, GuardedState
     state.blend_residual_newton *= left;
     if (!is_relaxed) return;
     const auto felt_with = [&](const Vec3& residual) {
-        return hand_force(settings.force_law, state.at_place.force_newton + residual);
+        return hand_force(settings.force_law, force_with(settings, true, state, residual));
     };
     const Vec3 felt = felt_with(before);
     constexpr int tries = 8;  // the law may bend on the way
@@ -230,10 +239,10 @@ void update_blend(const GuardedSettings& settings, bool is_relaxed, GuardedState
 // What the rest of an old model's force does to the handle comes from nothing.
 double find_blend_work(const GuardedSettings& settings, const Vec3& moved_m,
                        const GuardedState& state) noexcept {
-    const Vec3& force = state.at_place.force_newton;
-    return (hand_force(settings.force_law, force + state.blend_residual_newton) -
-            hand_force(settings.force_law, force))
-        .dot(moved_m);
+    const auto felt_with = [&](const Vec3& residual) {
+        return hand_force(settings.force_law, force_with(settings, true, state, residual));
+    };
+    return (felt_with(state.blend_residual_newton) - felt_with(Vec3::Zero())).dot(moved_m);
 }
 
 // The gain of a step that has led to where another one holds: of where it is stiffer that of there,
@@ -431,7 +440,11 @@ GuardedTick step_guarded(const GuardedSettings& settings, const LocalContactMode
     state.went_with = gain.inverse;
 
     update_blend(settings, model.relaxed.has_value(), state);
-    tick.force_newton = state.at_place.force_newton + state.blend_residual_newton;
+    const Vec3 blended = state.at_place.force_newton + state.blend_residual_newton;
+    tick.force_newton =
+        force_with(settings, model.relaxed.has_value(), state, state.blend_residual_newton);
+    if (tick.force_newton != blended)
+        state.blend_residual_newton = tick.force_newton - state.at_place.force_newton;
     // Foretold for where the handle is when it acts; else what is late by t gives K t v² to a hand.
     Vec3 law = hand_force(settings.force_law, tick.force_newton);
     const Mat3 felt = model.relaxed ? Mat3(force_jacobian(settings.force_law, tick.force_newton) *

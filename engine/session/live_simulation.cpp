@@ -298,7 +298,8 @@ void LiveSimulation::follow_unbinding() {
     const bool is_other = std::exchange(unbinding_edition_, edition_) != edition_;
     if (!unbinding_ || (is_other && !unbinding_->suits(world_))) {
         unbinding_.emplace(world_);
-    } else {
+    } else if (constexpr std::uint64_t steps_apart = 10;  // each looks at all pairs of heavy atoms
+               world_.resource<Clock>().steps % steps_apart == 0) {
         unbinding_->add(world_);
     }
 }

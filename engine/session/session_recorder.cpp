@@ -136,12 +136,13 @@ void SessionRecorder::write_beginning(Recording& recording, const std::filesyste
     recording.add_journal(writer_.take());
 }
 
-void SessionRecorder::end() {
+void SessionRecorder::end(const std::optional<UnbindingPath>& unbinding) {
     if (!recording_) return;
     flush();
     if (!recording_) throw LoadError({"recording"}, take_failure());
     Summary summary = statistics_.front().summary();
     summary.device = devices_.front().spec.name;
+    summary.unbinding = unbinding;
     for (std::size_t i = 1; i < statistics_.size(); ++i) {
         summary.other_hands.push_back(statistics_[i].summary());
         summary.other_hands.back().device = devices_[i].spec.name;

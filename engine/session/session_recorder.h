@@ -45,9 +45,9 @@ public:
     void add(const TrajectoryShot& shot);
     // Notes for the user since the last call, one sentence each.
     std::vector<std::string> take_notes();
-    // Ends the recording with its summary; does nothing without one. Throws LoadError if that
-    // cannot be written.
-    void end();
+    // Ends the recording with its summary, which has the way of what is in hand since the session
+    // began; does nothing without one. Throws LoadError if that cannot be written.
+    void end(const std::optional<UnbindingPath>& unbinding = {});
 
     // A row a second of how the session fares from now on, whether it is recorded or not. Throws
     // LoadError where the file is there. What keeps it from being written later is a note.

@@ -157,7 +157,8 @@ std::optional<FollowingAtoms> find_following(const World& world, Entity hand,
     for (const auto* const moves : {&following.points.group, &following.points.environment}) {
         for (const Mat3& move : *moves) farthest = std::max(farthest, move.norm());
     }
-    following.reach_angstrom = find_farthest(second->settings, second->statics) / farthest;
+    // Not farther for fast hands: atoms that follow linearly so far come on each other.
+    following.reach_angstrom = second->settings.farthest / farthest;
     following.memory = build_following_memory(field.frozen);
     following.there = evaluate_following_field(field.frozen, field.group, following.points,
                                                Vec3::Zero(), following.memory);

@@ -472,7 +472,7 @@ private:
     bool model_holds() const {
         return is_finite(statics_) &&
                find_largest_move(model_.mobile_atoms, linear().at.positions, state_.positions) <
-                   find_farthest(settings_, statics_) &&
+                   settings_.farthest * (statics_.hand_waited ? wider_for_fast_hands : 1) &&
                !are_too_close(linear().close, state_.positions);
     }
 
@@ -515,11 +515,6 @@ private:
 double find_farthest_hand(const SecondOrderSettings& settings,
                           const SecondOrderStatics& statics) noexcept {
     return settings.farthest_hand * (statics.hand_waited ? wider_for_fast_hands : 1);
-}
-
-double find_farthest(const SecondOrderSettings& settings,
-                     const SecondOrderStatics& statics) noexcept {
-    return settings.farthest * (statics.hand_waited ? wider_for_fast_hands : 1);
 }
 
 SecondOrderStatics build_second_order_statics(const TorsionModel& model, HeldParts held) {

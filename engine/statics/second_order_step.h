@@ -51,7 +51,7 @@ struct HandPlace {
 // The factor by which the region of a model is wider if the hand waited at the end of the last one,
 // because it is faster than renewals. Makes fewer renewals, each with a larger error. Only used if
 // renewals do not take place at once.
-inline constexpr double wider_for_fast_hands = 1.5;
+inline constexpr double wider_for_fast_hands = 2;
 
 // State that steps carry over from one to the next.
 struct SecondOrderStatics {
@@ -91,11 +91,9 @@ struct SecondOrderStatics {
     std::size_t model_evaluations = 0;
 };
 
-// How far a hand, and an atom, may be from the point of linearisation now (Å).
+// How far a hand may be from the point of linearisation now (Å).
 double find_farthest_hand(const SecondOrderSettings& settings,
                           const SecondOrderStatics& statics) noexcept;
-double find_farthest(const SecondOrderSettings& settings,
-                     const SecondOrderStatics& statics) noexcept;
 
 SecondOrderStatics build_second_order_statics(const TorsionModel& model, HeldParts held);
 

@@ -23,6 +23,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
@@ -284,6 +285,9 @@ TEST_CASE("renewals that a thread of its own makes are played again to the bit",
         return step && step->adopts_renewal;
     });
     CHECK(adopts > 0);  // how many depends on the machine
+    const auto summary = nlohmann::json::parse(read_text_file(recording / "summary.json"));
+    CHECK(summary.at("farthest_angstrom") > 0.5);  // what is in hand was moved to both sides
+    CHECK(summary.at("closest_atoms_angstrom") <= summary.at("clearance_angstrom"));
 }
 
 TEST_CASE("edits that take longer than a step are played again to the bit",

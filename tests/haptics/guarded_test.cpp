@@ -259,6 +259,28 @@ TEST_CASE("where everything follows, a new model's force comes in over 30 ms, ge
     CHECK(std::abs(after_ten - before) < 0.8 * std::abs(wanted - before));
 }
 
+TEST_CASE("a force of one model alone that is beyond all bounds is forgotten in 0.7 s",
+          "[haptics][guarded][relaxed]") {
+    const Pair pair;
+    Guarded guarded(relaxed_contact(pair, 3.9, 0, 0.3));
+    guarded.settings.force_law = ConstantForceLaw{0.8e9};
+    for (int i = 0; i < 50; ++i) (void)guarded.move(Vec3::Zero());
+    const LocalContactModel usual = guarded.contact;
+    guarded.contact.model.force_newton.x() += 6e-6;  // 4.8 kN at the handle
+    take_local_contact(guarded.contact, guarded.state);
+    const int ticks = GENERATE(1, 10, 100);
+    double largest = 0;
+    for (int i = 0; i < ticks; ++i)
+        largest = std::max(largest, guarded.move(Vec3::Zero()).force_newton.norm());
+    CHECK(largest <= guarded.settings.stop_newton * (1 + 1e-9));
+
+    guarded.contact = usual;
+    take_local_contact(guarded.contact, guarded.state);
+    double now = 0;
+    for (int i = 0; i < 700; ++i) now = guarded.move(Vec3::Zero()).force_newton.x();
+    CHECK(now == Approx(pair.force(3.9)).margin(1e-12));
+}
+
 TEST_CASE("what is blended counts in the energy books", "[haptics][guarded][relaxed]") {
     Guarded guarded(relaxed_contact(Pair(), 3.9, 0, 0.3));
     guarded.settings.damping_N_s_per_m = 0;
