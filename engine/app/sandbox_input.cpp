@@ -186,25 +186,40 @@ void Sandbox::exchange_hands() {
                              held_address_.empty() ? translated("empty") : held_address_));
 }
 
-// Moves the camera so that panels never cover what the hand leads.
+// Moves the camera so that panels never cover what the hand leads: all of it where it fits, else its
+// atom in hand.
 void Sandbox::keep_in_sight(double seconds) {
-    constexpr float margin = 0.15F;  // of the area without panels
+    constexpr float margin = 0.05F, margin_of_atom = 0.15F;  // of the area without panels
     constexpr double catches_up_s = 0.15;
     const LiveHand& led = frame_.hands[led_];
     const VkExtent2D size = shell_.graphics()->swapchain.size();
     if (!has_frame_ || led.held.count == 0 || size.width == 0 || size.height == 0) return;
-    const glm::vec3 seen =
-        project(shown_.camera, as_float(led.grabbed_angstrom), size.width, size.height);
-    if (!(seen.z > shown_.camera.near)) return;
     const ScreenArea area = free_area();
     if (area.width() <= 0 || area.height() <= 0) return;
-    const auto beyond = [](float at, float low, float high) {
-        const float edge = margin * (high - low);
-        return at - std::clamp(at, low + edge, high - edge);
+    const auto see = [&](const glm::vec3& place) {
+        return project(shown_.camera, place, size.width, size.height);
+    };
+    const glm::vec3 grabbed = see(as_float(led.grabbed_angstrom));
+    if (!(grabbed.z > shown_.camera.near)) return;
+    glm::vec3 first = grabbed, last = grabbed;
+    const std::size_t end = std::min<std::size_t>(led.held.first + led.held.count,
+                                                  frame_.places.size());
+    for (std::size_t i = led.held.first; i < end; ++i) {
+        const glm::vec3 seen = see(frame_.places[i]);
+        first = glm::min(first, seen);
+        last = glm::max(last, seen);
+    }
+    const float room = 1 - 2 * margin;
+    const bool fits = first.z > shown_.camera.near && last.x - first.x < room * area.width() &&
+                      last.y - first.y < room * area.height();
+    if (!fits) first = last = grabbed;
+    const auto beyond = [&](float least, float most, float low, float high) {
+        const float edge = (fits ? margin : margin_of_atom) * (high - low);
+        return std::min(least - low - edge, 0.0F) + std::max(most - high + edge, 0.0F);
     };
     const auto share = static_cast<float>(1 - std::exp(-seconds / catches_up_s));
-    const float right = beyond(seen.x, area.left, area.right);
-    const float down = beyond(seen.y, area.top, area.bottom);
+    const float right = beyond(first.x, last.x, area.left, area.right);
+    const float down = beyond(first.y, last.y, area.top, area.bottom);
     if (right == 0 && down == 0) return;
     take_camera();
     pan(camera_, -share * right, -share * down, static_cast<float>(size.height));
