@@ -1,4 +1,4 @@
-// A headless run of the water scene with settings, as `palpa run` does it.
+// A headless run of a scene, or of water with settings, as `palpa run` does it.
 #pragma once
 #include "devices/emulated_omni.h"
 #include "session/plan_hand.h"
@@ -12,13 +12,16 @@
 
 namespace palpa::test {
 
-inline Summary run_water(const std::vector<std::string>& settings) {
-    const SceneDescription scene = water_scene(settings);
+inline Summary run_scene(const SceneDescription& scene) {
     World world = load_world(scene);
     const EmulatedOmniSettings device_settings = build_played_omni(scene, world);
     EmulatedOmni device(device_settings);
     return run_headless(scene, world, device, list_warnings(scene, world, device_settings.script),
                         nullptr, {});
+}
+
+inline Summary run_water(const std::vector<std::string>& settings) {
+    return run_scene(water_scene(settings));
 }
 
 }  // namespace palpa::test
