@@ -81,9 +81,7 @@ DeviceReading EmulatedOmni::read() noexcept {
 }
 
 void EmulatedOmni::write(const Vec3& force_newton) noexcept {
-    const double norm = force_newton.stableNorm();
-    const double peak = settings_.peak_force_newton;
-    const Vec3 motors = norm > peak ? Vec3(force_newton * (peak / norm)) : force_newton;
+    const Vec3 motors = shortened(force_newton, settings_.peak_force_newton);
 
     if (!take_orders()) return;
     const double now_s = static_cast<double>(tick_ - start_tick_) * servo_tick_s;

@@ -5,14 +5,6 @@
 #include <numbers>
 
 namespace palpa {
-namespace {
-
-// `way`, but no longer than that.
-Vec3 shortened(const Vec3& way, double longest) noexcept {
-    return way * std::min(1.0, longest / std::max(way.stableNorm(), 1e-12));
-}
-
-}  // namespace
 
 double calm_mouse_stiffness(const MouseHandleSettings& settings) noexcept {
     const double K = settings.stiffness_N_per_m;

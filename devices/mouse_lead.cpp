@@ -13,8 +13,7 @@ void MouseLead::see(const Vec3& handle_m, double displacement_gain) noexcept {
 
 void MouseLead::pull(const Vec3& way_angstrom) noexcept {
     target_m_ += units::metre_per_angstrom * displacement_gain_ * way_angstrom;
-    const Vec3 ahead = target_m_ - handle_m_;
-    if (ahead.norm() > reach_m_) target_m_ = handle_m_ + ahead * (reach_m_ / ahead.norm());
+    target_m_ = handle_m_ + shortened(target_m_ - handle_m_, reach_m_);
 }
 
 void MouseLead::engage() noexcept {

@@ -104,17 +104,17 @@ Values parse_values(std::string_view line, const TextPlace& place,
     return values;
 }
 
-PlayedRow row_of(const Values& values, const TextPlace& place) {
+PlayedRow row_of(const Values& values, const TextPlace& place, double reach_m) {
     const PlayedRow row{values[0],
                         {values[1], values[2], values[3]},
                         {values[5], values[6], values[7]},
                         values[4] != 0,
                         values[8],
                         values[9] != 0};
-    if (row.handle_m.cwiseAbs().maxCoeff() > played_reach_m) {
+    if (row.handle_m.cwiseAbs().maxCoeff() > reach_m) {
         throw LoadError(place,
                         fmt::format("the handle is {:.6g} m from the middle; expected at most {} m",
-                                    row.handle_m.cwiseAbs().maxCoeff(), played_reach_m));
+                                    row.handle_m.cwiseAbs().maxCoeff(), reach_m));
     }
     if (row.turn_rad.cwiseAbs().maxCoeff() > most_turn_rad) {
         throw LoadError(place,
@@ -127,6 +127,9 @@ PlayedRow row_of(const Values& values, const TextPlace& place) {
     }
     if (values[4] != 0 && values[4] != 1) {
         throw LoadError(place, fmt::format("clutch is {:.6g}; expected 0 or 1", values[4]));
+    }
+    if (values[9] != 0 && values[9] != 1) {
+        throw LoadError(place, fmt::format("at_stop is {:.6g}; expected 0 or 1", values[9]));
     }
     return row;
 }
@@ -150,7 +153,8 @@ std::vector<PlayedRow> parse_table(std::string_view text, const std::string& fil
             columns = find_columns(line, place, is_recorded);
             continue;
         }
-        const PlayedRow row = row_of(parse_values(line, place, columns), place);
+        const PlayedRow row = row_of(parse_values(line, place, columns), place,
+                                     is_recorded ? trace_reach_m : script_reach_m);
         if (!rows.empty() && !(row.time_s > rows.back().time_s)) {
             throw LoadError(place,
                             fmt::format("the time {} s follows {} s; expected ascending times",

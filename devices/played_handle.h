@@ -27,8 +27,9 @@ struct PlayedRow {
     bool at_stop = false;
 };
 
-// Largest distance of a row from the middle along each axis, m: a mouse has no end.
-inline constexpr double played_reach_m = 100;
+// Largest distance of a row from the middle along each axis, m: of a script, and of a recorded
+// trace, since a mouse has no end.
+inline constexpr double script_reach_m = 0.5, trace_reach_m = 100;
 
 // Parses comma-separated values with a header line: time_s, handle_x_m, handle_y_m, handle_z_m and,
 // optionally, clutch (0 or 1), handle_turn_x_rad, handle_turn_y_rad, handle_turn_z_rad, cap_N_per_m

@@ -8,9 +8,7 @@ namespace {
 
 // The vector, no longer than that; nothing where it is no number.
 Vec3 limited(const Vec3& vector, double longest) noexcept {
-    const double length = vector.stableNorm();  // of any number: its square may be none
-    if (!std::isfinite(length)) return Vec3::Zero();
-    return length > longest ? Vec3(vector * (longest / length)) : vector;
+    return std::isfinite(vector.stableNorm()) ? shortened(vector, longest) : Vec3(Vec3::Zero());
 }
 
 }  // namespace

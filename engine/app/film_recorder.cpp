@@ -84,7 +84,8 @@ void FilmRecorder::write_pictures() {
 }
 
 void FilmRecorder::run() {
-    lower_priority();  // behind feeling and drawing
+    constexpr int behind_drawing = 10;
+    lower_priority(behind_drawing);
     std::string said;
     try {
         write_pictures();

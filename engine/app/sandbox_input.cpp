@@ -179,15 +179,17 @@ void Sandbox::exchange_hands() {
     if (hands_.size() < 2)
         return notice(translated(
             "this scene has one hand; a table [second.grab] in the scene file adds a second"));
+    if (holding_) clutch(led_);
     led_ = by_keys();
+    if (holding_) engage(led_);
     held_address_ = in_hand().held_address;
     notice(format_translated("the mouse moves the {} hand ({}); the arrow keys move the other",
                              led_ == 0 ? translated("first") : translated("second"),
                              held_address_.empty() ? translated("empty") : held_address_));
 }
 
-// Moves the camera so that panels never cover what the hand leads: all of it where it fits, else its
-// atom in hand.
+// Moves the camera so that panels never cover what the hand leads: all of it where it fits, else
+// its atom in hand.
 void Sandbox::keep_in_sight(double seconds) {
     constexpr float margin = 0.05F, margin_of_atom = 0.15F;  // of the area without panels
     constexpr double catches_up_s = 0.15;
@@ -202,8 +204,8 @@ void Sandbox::keep_in_sight(double seconds) {
     const glm::vec3 grabbed = see(as_float(led.grabbed_angstrom));
     if (!(grabbed.z > shown_.camera.near)) return;
     glm::vec3 first = grabbed, last = grabbed;
-    const std::size_t end = std::min<std::size_t>(led.held.first + led.held.count,
-                                                  frame_.places.size());
+    const std::size_t end =
+        std::min<std::size_t>(led.held.first + led.held.count, frame_.places.size());
     for (std::size_t i = led.held.first; i < end; ++i) {
         const glm::vec3 seen = see(frame_.places[i]);
         first = glm::min(first, seen);

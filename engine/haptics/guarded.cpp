@@ -26,19 +26,18 @@ constexpr double law_glide_s = 0.1;
 // no tick changes the force at the handle by more than this because of it.
 constexpr double relaxed_blend_s = 0.03, most_blended_newton = 0.03;
 
-// `way`, but no longer than that.
-Vec3 shortened(const Vec3& way, double longest) noexcept {
-    const double length = way.norm();
-    return length > longest ? Vec3(way * (longest / length)) : way;
-}
-
-// What the molecule is in: the newest contact model, and where other hands have theirs.
+// What the molecule is in: the newest contact model, and where other hands have theirs. Where
+// everything follows, atoms that follow a fast hand linearly can come on each other, so no more
+// counts than the force at which a molecule stops.
 struct Surroundings {
     const LocalContactModel& contact;
     LiveMolecules live;
+    double stop_newton;
 
     LocalForce at(const MoleculePose& pose) const noexcept {
-        return evaluate_local(contact.model, contact.field, pose, live);
+        LocalForce there = evaluate_local(contact.model, contact.field, pose, live);
+        if (contact.model.relaxed) there.force_newton = shortened(there.force_newton, stop_newton);
+        return there;
     }
 };
 
@@ -207,15 +206,6 @@ Vec3 find_remainder(const GuardedGain& gain, const GuardedState& state) noexcept
     return units::angstrom_per_metre * ((mean - state.went_with) * state.stepped_m);
 }
 
-// The force on the molecule with this rest of the old model's. Where everything follows, atoms that
-// follow a fast hand linearly can come on each other, so no more counts than the force at which a
-// molecule stops.
-Vec3 force_with(const GuardedSettings& settings, bool is_relaxed, const GuardedState& state,
-                const Vec3& residual_newton) noexcept {
-    const Vec3 force = state.at_place.force_newton + residual_newton;
-    return is_relaxed ? shortened(force, settings.stop_newton) : force;
-}
-
 // How the old model's force goes over into the new one's. Where everything follows, `most_blended`
 // limits what the handle feels of that in a tick.
 void update_blend(const GuardedSettings& settings, bool is_relaxed, GuardedState& state) noexcept {
@@ -224,7 +214,7 @@ void update_blend(const GuardedSettings& settings, bool is_relaxed, GuardedState
     state.blend_residual_newton *= left;
     if (!is_relaxed) return;
     const auto felt_with = [&](const Vec3& residual) {
-        return hand_force(settings.force_law, force_with(settings, true, state, residual));
+        return hand_force(settings.force_law, state.at_place.force_newton + residual);
     };
     const Vec3 felt = felt_with(before);
     constexpr int tries = 8;  // the law may bend on the way
@@ -240,7 +230,7 @@ void update_blend(const GuardedSettings& settings, bool is_relaxed, GuardedState
 double find_blend_work(const GuardedSettings& settings, const Vec3& moved_m,
                        const GuardedState& state) noexcept {
     const auto felt_with = [&](const Vec3& residual) {
-        return hand_force(settings.force_law, force_with(settings, true, state, residual));
+        return hand_force(settings.force_law, state.at_place.force_newton + residual);
     };
     return (felt_with(state.blend_residual_newton) - felt_with(Vec3::Zero())).dot(moved_m);
 }
@@ -269,11 +259,13 @@ std::optional<GuardedGain> find_better_gain(const GuardedSettings& settings,
 }
 
 // Keeps the travel that the molecule did not follow, where everything follows the hand: up to the
-// travel that presses against the stop as overtravel, the rest as waiting travel. Returns what is
-// clipped.
+// travel that presses that way against the stop as overtravel, the rest as waiting travel. Returns
+// what is clipped.
 Vec3 keep_travel(const Vec3& held, const Vec3& cut, const Vec3& pressing,
                  GuardedState& state) noexcept {
-    state.overtravel_m = shortened(held, pressing.norm());
+    const double length = held.norm();
+    const double pressed = length > 0 ? std::max(0.0, pressing.dot(held) / length) : 0;
+    state.overtravel_m = shortened(held, pressed);
     const Vec3 waiting = held + cut - state.overtravel_m;
     state.waiting_m = shortened(waiting, most_waiting_m);
     return waiting - state.waiting_m;
@@ -354,8 +346,8 @@ Vec3 filtered_velocity(const Vec3& before_m_per_s, const Vec3& moved_m) noexcept
     return keep * before_m_per_s + (1 - keep) / servo_tick_s * counted;
 }
 
-void take_local_contact(const LocalContactModel& contact, GuardedState& state,
-                        LiveMolecules live) noexcept {
+void take_local_contact(const GuardedSettings& settings, const LocalContactModel& contact,
+                        GuardedState& state, LiveMolecules live) noexcept {
     const ContactModel& model = contact.model;
     const Vec3 felt = state.at_place.force_newton + state.blend_residual_newton;
     const bool goes_on = state.is_placed && state.start == model.start && !model.is_still;
@@ -370,7 +362,7 @@ void take_local_contact(const LocalContactModel& contact, GuardedState& state,
         state.law_blend_residual_newton.setZero();
         state.wanted_m = state.allowed_m = state.energy_balance_J = 0;
     }
-    state.at_place = evaluate_local(model, contact.field, state.molecule, live);
+    state.at_place = Surroundings{contact, live, settings.stop_newton}.at(state.molecule);
     state.blend_residual_newton.setZero();
     if (goes_on) state.blend_residual_newton = felt - state.at_place.force_newton;
     state.interval_s = goes_on ? state.since_arrival_s : model.period_s;
@@ -389,7 +381,7 @@ GuardedTick step_guarded(const GuardedSettings& settings, const LocalContactMode
     state.handle_m_per_s = filtered_velocity(state.handle_m_per_s, moved_m);
     if (!state.is_placed || model.is_still) return tick;
 
-    const Surroundings around{contact, live};
+    const Surroundings around{contact, live, settings.stop_newton};
     // Other hands have moved since.
     if (!contact.field.held.empty()) state.at_place = around.at(state.molecule);
     const Vec3 before = state.at_place.force_newton + state.blend_residual_newton;
@@ -440,11 +432,7 @@ GuardedTick step_guarded(const GuardedSettings& settings, const LocalContactMode
     state.went_with = gain.inverse;
 
     update_blend(settings, model.relaxed.has_value(), state);
-    const Vec3 blended = state.at_place.force_newton + state.blend_residual_newton;
-    tick.force_newton =
-        force_with(settings, model.relaxed.has_value(), state, state.blend_residual_newton);
-    if (tick.force_newton != blended)
-        state.blend_residual_newton = tick.force_newton - state.at_place.force_newton;
+    tick.force_newton = state.at_place.force_newton + state.blend_residual_newton;
     // Foretold for where the handle is when it acts; else what is late by t gives K t v² to a hand.
     Vec3 law = hand_force(settings.force_law, tick.force_newton);
     const Mat3 felt = model.relaxed ? Mat3(force_jacobian(settings.force_law, tick.force_newton) *

@@ -141,8 +141,8 @@ Vec3 filtered_velocity(const Vec3& before_m_per_s, const Vec3& moved_m) noexcept
 
 // A contact model has come, in place of `before`'s. To be called in the tick in which it is first
 // seen, before step_guarded. `live`: what other hands hold, as far as their servos have got.
-void take_local_contact(const LocalContactModel& contact, GuardedState& state,
-                        LiveMolecules live = {}) noexcept;
+void take_local_contact(const GuardedSettings& settings, const LocalContactModel& contact,
+                        GuardedState& state, LiveMolecules live = {}) noexcept;
 
 // Moves the molecule with the handle, and turns it if that is what the handle does to it, as far
 // as limits let it. In one tick of 1 ms the handle went by `handle` to `handle_m`; clutched, that

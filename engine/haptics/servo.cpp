@@ -110,7 +110,7 @@ ServoTick step_with_taken(const ServoSettings& settings, ServoState& state, Exch
     if (settings.guarded) {
         GuardedState& guarded = state.guarded;
         if (is_new || (state.has_touch && !guarded.is_placed))
-            take_local_contact(contact, guarded, live);
+            take_local_contact(*settings.guarded, contact, guarded, live);
         const GuardedTick done = step_guarded(*settings.guarded, contact, state.handle_m, handle,
                                               clutched, guarded, live);
         wanted = done.hand_newton;

@@ -10,6 +10,12 @@ using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 using Quat = Eigen::Quaterniond;
 
+// The same direction, but no longer than that; of what is not finite nothing is promised.
+inline Vec3 shortened(const Vec3& way, double longest) noexcept {
+    const double length = way.stableNorm();
+    return length > longest ? Vec3(way * (longest / length)) : way;
+}
+
 // The rotation of a rotation vector: about its direction by its length (rad).
 inline Quat turn_of(const Vec3& rotation_vector) noexcept {
     const double angle = rotation_vector.norm();

@@ -38,10 +38,12 @@ void visit_hand(Hand& hand, Visitor&& visit) {
     visit(reading.orientation.x());
     visit(reading.orientation.y());
     visit(reading.orientation.z());
+    visit(reading.at_stop);  // since 2.1
 }
 
 std::string word_of(double value) { return fmt::format("{}", value); }
 std::string word_of(bool value) { return value ? "1" : "0"; }
+std::string word_of(std::optional<bool> value) { return value ? word_of(*value) : "?"; }
 std::string word_of(std::uint64_t value) { return fmt::format("{}", value); }
 std::string word_of(std::uint32_t value) { return fmt::format("{}", value); }
 std::string word_of(DeviceTrouble value) { return fmt::format("{}", static_cast<int>(value)); }
@@ -89,6 +91,10 @@ bool read_word(std::string_view word, std::uint32_t& value) {
 bool read_word(std::string_view word, bool& value) {
     value = word == "1";
     return word == "0" || word == "1";
+}
+bool read_word(std::string_view word, std::optional<bool>& value) {
+    value.reset();
+    return word == "?" || read_word(word, value.emplace());
 }
 bool read_word(std::string_view word, DeviceTrouble& value) {
     const std::optional<int> number = find_number<int>(word);

@@ -297,10 +297,10 @@ void LiveSimulation::follow_unbinding() {
     if (!has_mobile(world_) || !is_held || find_remote_engine(world_)) return;
     const bool is_other = std::exchange(unbinding_edition_, edition_) != edition_;
     if (!unbinding_ || (is_other && !unbinding_->suits(world_))) {
-        unbinding_.emplace(world_);
+        unbinding_.emplace(world_, poses_.front().time_s);
     } else if (constexpr std::uint64_t steps_apart = 10;  // each looks at all pairs of heavy atoms
                world_.resource<Clock>().steps % steps_apart == 0) {
-        unbinding_->add(world_);
+        unbinding_->add(world_, poses_.front().time_s);
     }
 }
 

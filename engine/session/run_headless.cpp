@@ -83,8 +83,12 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const World& w
     guarded.half_workspace_m = device.half_workspace_m;
     guarded.damping_N_s_per_m =
         guarded_damping(c.damping_N_s_per_m, scene.device.inertia_kg, settings.delay_ticks);
+    // Of a device that does not know its viscosity the scene's counts.
+    DeviceSpec known = device;
+    if (known.viscosity_N_s_per_m == 0)
+        known.viscosity_N_s_per_m = scene.device.viscosity_N_s_per_m;
     guarded.device_cap_N_per_m = guarded.cap_N_per_m =
-        guarded_cap(device, guarded.damping_N_s_per_m, settings.delay_ticks);
+        guarded_cap(known, guarded.damping_N_s_per_m, settings.delay_ticks);
     // Where the scene says what must be felt, no tick feels more than the cap. Of 60 closed paths
     // in space with 50 to 400 pN none outruns its limits with this A_d, one does by 12.5 mJ with
     // half of it.
@@ -453,7 +457,8 @@ public:
     void add_step(const World& world) {
         const StepReport& report = world.resource<StepReport>();
         for (Statistics& each : statistics_) each.add_step(1e-6 * report.took_us, report.finite);
-        if (unbinding_) unbinding_->add(world);
+        const Clock& clock = world.resource<Clock>();
+        if (unbinding_) unbinding_->add(world, static_cast<double>(clock.steps) * clock.period_s);
         client_pulls_ += is_pulled_by_clients(world) ? 1 : 0;
         if (!report.relaxed) {
             accuracy_.add_answer(local_contact_of(world).model);

@@ -77,7 +77,8 @@ void Statistics::add_travel(const ServoTick& tick) {
     if (tick.is_at_stop && !tick.clutched) ++stop_ticks_;
     if (!is_sane(tick.reading)) return;
     const Vec3& handle_m = tick.reading.position_m;
-    if (tick.clutched || !counted_m_) {
+    // Nothing is in hand while the device is exchanged.
+    if (tick.clutched || tick.contact.is_still || !counted_m_) {
         counted_m_ = handle_m;
         is_in_stroke_ = false;
         return;

@@ -42,7 +42,7 @@ bool UnbindingLog::suits(const World& world) const {
            find_heavy(world, first_hand(world)) == heavy_;
 }
 
-UnbindingLog::UnbindingLog(const World& start)
+UnbindingLog::UnbindingLog(const World& start, double time_s)
     : comparison_(start), start_(start.resource<AtomTable>().positions) {
     const AtomTable& atoms = start.resource<AtomTable>();
     const Entity hand = first_hand(start);
@@ -55,10 +55,11 @@ UnbindingLog::UnbindingLog(const World& start)
     start_centre_ = centre_of_held(start);
     unbinding_.closest = std::numeric_limits<double>::infinity();
     unbinding_.farthest = -1;  // so that the start counts
-    add(start);
+    is_whole_ = !spring_of(start, hand);
+    add(start, time_s);
 }
 
-void UnbindingLog::add(const World& world) {
+void UnbindingLog::add(const World& world, double time_s) {
     const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
     double nearest2 = std::numeric_limits<double>::infinity();
     for (const std::size_t own : heavy_) {
@@ -69,10 +70,8 @@ void UnbindingLog::add(const World& world) {
     }
     const double clearance = std::sqrt(nearest2);
     unbinding_.closest = std::min(unbinding_.closest, clearance);
-    if (!unbinding_.free_s && clearance > free_angstrom) {
-        const Clock& clock = world.resource<Clock>();
-        unbinding_.free_s = static_cast<double>(clock.steps) * clock.period_s;
-    }
+    const bool is_free = is_whole_ && std::isfinite(clearance) && clearance > free_angstrom;
+    if (is_free && !unbinding_.free_s) unbinding_.free_s = time_s;
     const Vec3 centre = centre_of_held(world);
     const double distance = (centre - start_centre_).norm();
     if (distance > unbinding_.farthest) {

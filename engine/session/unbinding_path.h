@@ -17,7 +17,8 @@ struct UnbindingPath {
     double farthest = 0;  // largest distance of the centre of mass from its start
     double clearance =
         0;  // at that time: shortest distance of its heavy atoms to those of all other molecules
-    // Time at which it was first free: no heavy atom of others within `free_angstrom`.
+    // Time at which it was first free: no heavy atom of others within `free_angstrom`. Empty for
+    // what has no others, and for a residue or atom on a spring.
     std::optional<double> free_s = {};
     double closest = 0;  // the shortest such distance of the whole path
     // RMSD between end and start, as in session/compare_poses.h: of its heavy atoms, of the
@@ -29,11 +30,11 @@ struct UnbindingPath {
 // pulls.
 class UnbindingLog {
 public:
-    explicit UnbindingLog(const World& start);
+    explicit UnbindingLog(const World& start, double time_s = 0);
 
     // Whether the world has the same atoms, and the first hand holds the same ones.
     bool suits(const World& world) const;
-    void add(const World& world);
+    void add(const World& world, double time_s);
     UnbindingPath unbinding() const;
 
 private:
@@ -41,6 +42,7 @@ private:
     PoseComparison comparison_;
     std::vector<Vec3> start_, last_;  // positions of all atoms
     Vec3 start_centre_ = Vec3::Zero();
+    bool is_whole_ = true;  // the hand holds a molecule, not a part of one
     UnbindingPath unbinding_;
 };
 

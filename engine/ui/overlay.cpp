@@ -411,7 +411,10 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
             settings_.coupling.stop_nN, std::ceil(1e3 * overtravel_m_));
     });
     warn(at_stop_for_s_, is_at_stop_, [&] {
-        return std::string(translated("the handle is at its end: release, move back, press again"));
+        return std::string(
+            status.has_mouse_hand
+                ? translated("the handle is at its end: release Space, press it again")
+                : translated("the handle is at its end: press the clutch, move back, let go"));
     });
     if (went_through_) {
         warnings.emplace_back(

@@ -16,6 +16,7 @@ TEST_CASE("preferences read as they were written", "[tools][preferences]") {
     const Preferences odd{.device = "a \"b\"\n",
                           .sound = GENERATE(true, false),
                           .recent = {"/a 'b'", "c"},
+                          .hand_explained = true,
                           .language = "de"};
 
     CHECK(parse_preferences("device = \"omni\"", "p.toml") == Preferences{.device = "omni"});

@@ -133,7 +133,8 @@ TEST_CASE("what cannot be played is told with its line", "[devices][played]") {
     CHECK_THAT(told(header + "0,0,nan,0\n"), Contains("'nan' is not a number"));
     CHECK_THAT(told(header + "0,0,0,0\n0,0,0,0\n"),
                Contains("hand.csv:3: the time 0 s follows 0 s; expected ascending times"));
-    CHECK_THAT(told(header + "0,0,2000,0\n"), Contains("2000 m from the middle"));
+    CHECK_THAT(told(header + "0,0,20,0\n"), Contains("20 m from the middle; expected at most 0.5"));
+    CHECK_THAT(told("at_stop," + header + "2,0,0,0,0\n"), Contains("at_stop is 2"));
     CHECK_THAT(told("clutch," + header + "2,0,0,0,0\n"), Contains("clutch is 2"));
     CHECK_THAT(test::load_error_of([] { (void)read_script("/nowhere/hand.csv"); }),
                Contains("/nowhere/hand.csv"));

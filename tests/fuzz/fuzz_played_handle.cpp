@@ -22,7 +22,7 @@ void check_played(const std::vector<PlayedRow>& rows) {
     PlayedHandle handle({.rows = rows});
     for (int i = 0; i < 50; ++i) {
         const DeviceReading reading = handle.read();
-        PALPA_EXPECT(reading.position_m.cwiseAbs().maxCoeff() <= played_reach_m);
+        PALPA_EXPECT(reading.position_m.cwiseAbs().maxCoeff() <= trace_reach_m);
         PALPA_EXPECT(std::abs(reading.orientation.norm() - 1) < 1e-9);
         handle.write(Vec3::Zero());
     }

@@ -20,9 +20,9 @@ SceneDescription scene_of(const std::string& file, const std::vector<std::string
 void check_calm_and_passive(const std::string& file, int period_ms, const std::string& grip,
                             int delay_ticks) {
     CAPTURE(file, period_ms, grip, delay_ticks);
-    const Summary summary = test::run_scene(scene_of(
-        file, {"period_ms=" + std::to_string(period_ms), "grip=" + grip, "friction_N=0",
-               "servo_delay_ticks=" + std::to_string(delay_ticks), "run.seconds=60"}));
+    const Summary summary = test::run_scene(
+        scene_of(file, {"period_ms=" + std::to_string(period_ms), "grip=" + grip, "friction_N=0",
+                        "servo_delay_ticks=" + std::to_string(delay_ticks), "run.seconds=60"}));
     CHECK(summary.net_work_J < 0);
     CHECK(summary.ripple.value().rms < 0.02);
     CHECK(summary.largest_felt_N < 3);

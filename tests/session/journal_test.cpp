@@ -65,6 +65,7 @@ TEST_CASE("a journal reads as it was written, to the last bit", "[session][journ
     ticks[1].tick.reading.orientation = Quat(0.1, -0.2, 0.3, std::sqrt(0.86));
     ticks[1].tick.reading.trouble = DeviceTrouble::WarmMotors;
     ticks[1].tick.reading.buttons = 5;
+    ticks[1].tick.reading.at_stop = true;
     writer.add(ticks);
     ticks[0] = tick_of(
         1, {std::numeric_limits<double>::quiet_NaN(), 0, -std::numeric_limits<double>::infinity()});
@@ -109,6 +110,7 @@ TEST_CASE("a journal reads as it was written, to the last bit", "[session][journ
     CHECK(second.reading.orientation.coeffs() == Quat(0.1, -0.2, 0.3, std::sqrt(0.86)).coeffs());
     CHECK(second.reading.trouble == DeviceTrouble::WarmMotors);
     CHECK(second.reading.buttons == 5);
+    CHECK(second.reading.at_stop == true);
     CHECK(journal.hands_of(1)[1].reading.buttons == 5);
     CHECK(std::isnan(journal.hands_of(1)[0].reading.position_m.x()));
     CHECK(std::isinf(journal.hands_of(1)[0].reading.position_m.z()));

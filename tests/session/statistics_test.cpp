@@ -55,6 +55,9 @@ TEST_CASE("the way of a handle is counted by strokes, without tremor and clutch"
     move(100, -2e-4, true);  // back under the clutch
     move(1000, 0, false);    // a rest is no stroke
     move(100, 1e-4, false);  // 1 cm
+    tick.contact.is_still = true;
+    move(1, 0.07, false);  // to where another device is, with nothing in hand meanwhile
+    tick.contact.is_still = false;
     tick.clipped_m = {0, 3e-3, 4e-3};
     tick.is_at_stop = true;
     move(2, 0, false);

@@ -48,7 +48,7 @@ TEST_CASE("of a hand on a spring the path is that of its residue", "[session][un
     CHECK(log.unbinding().closest == Approx(at_start).epsilon(1e-12));
 
     move_held_atoms(0.5);
-    log.add(world);
+    log.add(world, 1.0);
 
     const double clearance = find_clearance();
     CHECK(log.unbinding().farthest == Approx(0.5).epsilon(1e-12));
@@ -58,7 +58,7 @@ TEST_CASE("of a hand on a spring the path is that of its residue", "[session][un
     CHECK(clearance > 1);
 
     move_held_atoms(-0.7);
-    log.add(world);
+    log.add(world, 1.0);
 
     // Not as far as before, on the other side: only what is the smallest of all may change.
     CHECK(log.unbinding().farthest == Approx(0.5).epsilon(1e-12));
@@ -67,6 +67,14 @@ TEST_CASE("of a hand on a spring the path is that of its residue", "[session][un
           Approx(std::min({at_start, clearance, find_clearance()})).epsilon(1e-12));
     CHECK(log.unbinding().last_rmsd == Approx(0.2).epsilon(1e-12));
     CHECK(log.unbinding().last_backbone == 0);
+
+    // Far away too, a part of a molecule is not free.
+    move_held_atoms(100);
+    log.add(world, 2.0);
+    CHECK(log.unbinding().clearance > free_angstrom);
+    CHECK_FALSE(log.unbinding().free_s.has_value());
+    move_held_atoms(-100);
+    log.add(world, 3.0);
 
     // What is not held counts as others, of the same chain too.
     const auto is_backbone = [&](std::size_t i) {
@@ -81,7 +89,7 @@ TEST_CASE("of a hand on a spring the path is that of its residue", "[session][un
             world.resource<AtomTable>().positions[i].z() += 2;
         }
     }
-    log.add(world);
+    log.add(world, 1.0);
     CHECK(log.unbinding().last_backbone ==
           Approx(2 * std::sqrt(4 / static_cast<double>(others))).epsilon(1e-12));
 }

@@ -243,8 +243,9 @@ void print_travel(const std::string& title, const HandTravel& travel) {
                moved_cm > 0 ? 100 * lost_cm / moved_cm : 0.0);
     if (travel.at_stop_s > 0) {
         fmt::print(
-            "              for {:.1f} s the handle was at its end: release, move back, press "
-            "again\n",
+            "              for {:.1f} s the handle was at its end: press the clutch, move back, "
+            "let "
+            "go\n",
             travel.at_stop_s);
     }
 }
