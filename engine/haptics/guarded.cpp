@@ -26,9 +26,9 @@ constexpr double law_glide_s = 0.1;
 // no tick changes the force at the handle by more than this because of it.
 constexpr double relaxed_blend_s = 0.03, most_blended_newton = 0.03;
 
-// What the molecule is in: the newest contact model, and where other hands have theirs. Where
-// everything follows, atoms that follow a fast hand linearly can come on each other, so no more
-// counts than the force at which a molecule stops.
+// The surroundings of the molecule: the newest contact model, and where other hands have theirs.
+// Where everything follows, atoms that follow a fast hand linearly can come on each other, so no
+// more counts than the force at which a molecule stops.
 struct Surroundings {
     const LocalContactModel& contact;
     LiveMolecules live;

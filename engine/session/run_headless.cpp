@@ -83,7 +83,7 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const World& w
     guarded.half_workspace_m = device.half_workspace_m;
     guarded.damping_N_s_per_m =
         guarded_damping(c.damping_N_s_per_m, scene.device.inertia_kg, settings.delay_ticks);
-    // Of a device that does not know its viscosity the scene's counts.
+    // Take the scene's viscosity for a device that does not state its own.
     DeviceSpec known = device;
     if (known.viscosity_N_s_per_m == 0)
         known.viscosity_N_s_per_m = scene.device.viscosity_N_s_per_m;
