@@ -5,6 +5,7 @@
 #include "core/text.h"
 #include "platform/file.h"
 #include "platform/program.h"
+#include "platform/system.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -58,7 +59,8 @@ std::string lower(std::string text) {
 
 }  // namespace
 
-std::string udev_remedy() {
+std::string permission_remedy() {
+    if (system_name() != "Linux") return "close other programs that use it";
     const fs::path program = find_program_file().parent_path();
     const fs::path installed = (program / "../lib/udev/rules.d/70-palpa.rules").lexically_normal();
     std::error_code error;

@@ -23,9 +23,9 @@ struct FoundDevice {
 // Whether this user may read and write the node.
 bool is_open_to_user(const std::filesystem::path& node);
 
-// The remedy if this user may not read or write a node below /dev: shell commands with the rules
+// The remedy if this user may not read or write a device: on Linux shell commands with the rules
 // that were installed with the program, or those of the source tree.
-std::string udev_remedy();
+std::string permission_remedy();
 
 // Finds USB devices with one of these ids, with their serial and hidraw nodes. `root` is the folder
 // that contains /sys and /dev.

@@ -2,6 +2,8 @@
 
 #include "devices/device_nodes.h"
 #include "devices/maker_library.h"
+#include "platform/library.h"
+#include "platform/system.h"
 #include "platform/thread.h"
 
 #include <fmt/format.h>
@@ -23,10 +25,13 @@ namespace {
 constexpr std::array usb_ids{UsbId{0x1451, 0x0301}, UsbId{0x1451, 0x0402}, UsbId{0x1451, 0x0403},
                              UsbId{0x1451, 0x040c}, UsbId{0x0403, 0xcb48}};
 
-constexpr const char* dhd_remedy =
-    "install the Force Dimension SDK (www.forcedimension.com, for Linux or Windows), put "
-    "libdhd.so.3 where the system finds it, for example into /usr/local/lib, then 'sudo "
-    "ldconfig'; or set PALPA_FORCE_DIMENSION to the path of libdhd.so.3 or dhd64.dll";
+std::string dhd_remedy() {
+    const std::string_view file = system_name() == "Windows" ? "dhd64.dll" : "libdhd.so.3";
+    return fmt::format(
+        "install the Force Dimension SDK (www.forcedimension.com), {}; or set "
+        "PALPA_FORCE_DIMENSION to the path of {}",
+        how_to_place_library(file), file);
+}
 
 // From the library's axes to the program's, and back by its transpose.
 const Mat3& turn_of_axes() {
@@ -98,8 +103,9 @@ std::string last_error(const dhd::Library& library) {
 void check_system(const std::filesystem::path& root, std::vector<DeviceCheck>& checks) {
     add_bus_checks(find_raw_usb_devices(root, usb_ids),
                    {"bus", CheckOutcome::Unknown, "no device with a known id on USB",
-                    "check power and cable; 'lsusb' shows Force Dimension's as 1451:..., a "
-                    "Falcon as 0403:cb48"},
+                    fmt::format("check power and cable; {} shows Force Dimension's as 1451:..., a "
+                                "Falcon as 0403:cb48",
+                                usb_list_name())},
                    checks);
 }
 
@@ -196,7 +202,7 @@ void ForceDimension::run() noexcept {
         if (!settings_.is_paced) continue;
         due = std::max(due + period,
                        Clock::now() - period);  // ticks that were missed are not repeated
-        std::this_thread::sleep_until(due);
+        sleep_exactly_until(due);
     }
     if (id_) stop();
 }
@@ -303,7 +309,7 @@ OpenedDevice open_force_dimension(const ForceDimensionSettings& settings,
     const bool is_whole = search.is_found && search.missing.empty();
     // The reason is the last check; that the device was seen stands before it.
     if (!is_whole) check_system(request.system_root, checks);
-    checks.push_back(check_library(search, dhd_remedy));
+    checks.push_back(check_library(search, dhd_remedy()));
     if (!search.is_found) return opened;
     checks.push_back(
         check_symbols(search, "install version 3.7 or newer of the Force Dimension SDK"));
@@ -315,7 +321,7 @@ OpenedDevice open_force_dimension(const ForceDimensionSettings& settings,
         checks.push_back({"init", CheckOutcome::Failed, last_error(library),
                           "check power and cable, and end other programs that use the device; on "
                           "Linux the user needs permission: " +
-                              udev_remedy()});
+                              permission_remedy()});
         return opened;
     }
     const char* const name = library.get_system_name(*id);

@@ -1,5 +1,7 @@
 #include "devices/hid_device.h"
 
+#include "platform/system.h"
+
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
@@ -83,7 +85,8 @@ DeviceCheck check_bus(const HidProtocol& protocol, const std::vector<HidPlace>& 
     return {"bus", CheckOutcome::Failed,
             fmt::format("no {} among the {} input devices of the system{}{}", protocol.name(),
                         places.size(), others.empty() ? "" : "; ", others),
-            "plug it in, or pair it and switch it on; 'lsusb' shows what is there"};
+            fmt::format("plug it in, or pair it and switch it on; {} shows what is there",
+                        usb_list_name())};
 }
 
 DeviceCheck check_permission(const HidPlace& place) {
@@ -91,7 +94,7 @@ DeviceCheck check_permission(const HidPlace& place) {
         return {"permission", CheckOutcome::Ok, place.path + " can be read and written", ""};
     }
     return {"permission", CheckOutcome::Failed,
-            place.path + " may not be read and written by this user", udev_remedy()};
+            place.path + " may not be read and written by this user", permission_remedy()};
 }
 
 DeviceCheck check_first_report(const HidDevice& device, bool is_talkative) {
@@ -333,7 +336,7 @@ OpenedDevice open_hid(std::unique_ptr<HidProtocol> protocol, const HidSettings& 
     const std::string version = hidapi_version();
     if (version.empty()) {
         checks.push_back({"library", CheckOutcome::Failed, "the library hidapi cannot be started",
-                          "install libhidapi-hidraw0"});
+                          std::string(hidapi_remedy())});
         return opened;
     }
     checks.push_back({"library", CheckOutcome::Ok, "hidapi " + version, ""});

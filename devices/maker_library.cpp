@@ -1,5 +1,7 @@
 #include "devices/maker_library.h"
 
+#include "platform/system.h"
+
 #include <fmt/format.h>
 #include <utility>
 
@@ -47,6 +49,8 @@ DeviceCheck check_symbols(const LibrarySearch& search, std::string remedy) {
 void add_bus_checks(std::span<const FoundDevice> found, DeviceCheck none,
                     std::vector<DeviceCheck>& checks) {
     if (found.empty()) {
+        if (system_name() != "Linux")
+            none.found = fmt::format("buses are not searched on {}", system_name());
         checks.push_back(std::move(none));
         return;
     }
@@ -61,7 +65,7 @@ void add_bus_checks(std::span<const FoundDevice> found, DeviceCheck none,
         checks.push_back(
             {"permission", CheckOutcome::Failed,
              fmt::format("{} may not be read and written by this user", fmt::join(closed, ", ")),
-             udev_remedy()});
+             permission_remedy()});
     } else if (nodes.empty()) {
         checks.push_back({"permission", CheckOutcome::Unknown, "no node below /dev belongs to it",
                           "plug it in again, and look at the end of 'sudo dmesg'"});

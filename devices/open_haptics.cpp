@@ -2,6 +2,8 @@
 
 #include "devices/device_nodes.h"
 #include "devices/maker_library.h"
+#include "platform/library.h"
+#include "platform/system.h"
 
 #include <fmt/format.h>
 #include <Eigen/LU>
@@ -28,9 +30,13 @@ constexpr double omni_peak_newton = 3.3, omni_continuous_newton = 0.88;
 // and the oldest ones do not show.
 constexpr std::array touch_ids{UsbId{0x2988, 0x0302}, UsbId{0x0301, 0x2988}, UsbId{0x2988, 0x0304}};
 
-constexpr const char* open_haptics_remedy =
-    "install the Touch driver and OpenHaptics for Linux (Developer Edition 3.4) from 3D Systems, "
-    "then 'sudo ldconfig'; or set PALPA_OPENHAPTICS to the path of libHD.so";
+std::string open_haptics_remedy() {
+    const std::string file = list_library_files("HD", {}).front();
+    return fmt::format(
+        "install the Touch driver and OpenHaptics for {} (Developer Edition 3.4) from 3D Systems, "
+        "{}; or set PALPA_OPENHAPTICS to the path of {}",
+        system_name(), how_to_place_library(file), file);
+}
 
 // The library has no more errors than this to tell at once, and must not keep us for ever.
 constexpr int most_errors = 16;
@@ -150,7 +156,8 @@ void check_touch_on_bus(const std::filesystem::path& root, std::vector<DeviceChe
         find_on_bus(root),
         {"bus", CheckOutcome::Unknown,
          "no device of this maker on USB or FireWire (a device on Ethernet does not show here)",
-         "check power and cable; 'lsusb' shows a Touch as 2988:0302 or 2988:0304"},
+         fmt::format("check power and cable; {} shows a Touch as 2988:0302 or 2988:0304",
+                     usb_list_name())},
         checks);
 }
 
@@ -425,7 +432,7 @@ OpenedDevice open_haptics(const OpenHapticsSettings& settings, const DeviceReque
     const bool is_whole = search.is_found && search.missing.empty();
     // The reason is the last check; that the device was seen stands before it.
     if (!is_whole) check_touch_on_bus(request.system_root, checks);
-    checks.push_back(check_library(search, open_haptics_remedy));
+    checks.push_back(check_library(search, open_haptics_remedy()));
     if (!search.is_found) return opened;
     checks.push_back(check_symbols(search, "install OpenHaptics 3.4 or newer"));
     if (!is_whole) return opened;

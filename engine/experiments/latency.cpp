@@ -56,7 +56,7 @@ void AnsweringServo::run() {
         }
         ticks_us_.push_back(std::chrono::duration<double, std::micro>(end - begin).count());
         next = std::max(next + std::chrono::milliseconds(1), end);
-        std::this_thread::sleep_until(next);
+        sleep_exactly_until(next);
     }
 }
 

@@ -1,5 +1,7 @@
 #include "gpu/device.h"
 
+#include "platform/system.h"
+
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
@@ -147,6 +149,9 @@ void GpuDevice::submit(const std::function<void(VkCommandBuffer)>& record) {
 }
 
 void GpuDevice::create_instance() {
+    if (!has_vulkan()) {
+        throw GpuError(fmt::format("there is no Vulkan driver; {}", vulkan_remedy()));
+    }
     VkApplicationInfo application{};
     application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
     application.pApplicationName = "Palpa";
@@ -175,7 +180,7 @@ void GpuDevice::create_instance() {
     info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
     info.ppEnabledExtensionNames = extensions.data();
     if (vkCreateInstance(&info, nullptr, &instance_) != VK_SUCCESS) {
-        throw GpuError("Vulkan cannot be started; install a driver (Debian: mesa-vulkan-drivers)");
+        throw GpuError(fmt::format("Vulkan cannot be started; {}", vulkan_remedy()));
     }
     if (!options_.validation) return;
     const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(

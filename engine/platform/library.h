@@ -12,6 +12,9 @@ namespace palpa {
 std::vector<std::string> list_library_files(std::string_view name,
                                             std::initializer_list<std::string_view> versions);
 
+// Advice to put a library's file where the system searches it.
+std::string how_to_place_library(std::string_view file);
+
 // A library that is never unloaded, so its functions stay valid until the program ends.
 class SharedLibrary {
 public:

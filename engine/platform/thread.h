@@ -2,7 +2,6 @@
 #pragma once
 #include <chrono>
 #include <string_view>
-#include <thread>
 
 namespace palpa {
 
@@ -20,10 +19,16 @@ std::string_view real_time_remedy() noexcept;
 // nice; drawing by 5.
 void lower_priority(int steps = 5) noexcept;
 
+// Sleeps until that moment as exactly as the system can; never shorter.
+void sleep_exactly_until(std::chrono::steady_clock::time_point moment);
+
+// How late a condition variable may end a wait for a time: who must be in time sleeps that long.
+std::chrono::milliseconds condition_lateness() noexcept;
+
 // Until that moment: asleep, and awake for the last 80 us, since a system wakes threads late.
 inline void wait_awake_until(std::chrono::steady_clock::time_point moment) {
     constexpr std::chrono::microseconds awake{80};
-    std::this_thread::sleep_until(moment - awake);
+    sleep_exactly_until(moment - awake);
     while (std::chrono::steady_clock::now() < moment) {
     }
 }

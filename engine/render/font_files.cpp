@@ -1,5 +1,7 @@
 #include "render/font_files.h"
 
+#include "platform/program.h"
+
 #include <cstdlib>
 #include <system_error>
 
@@ -7,6 +9,11 @@ namespace palpa {
 namespace {
 
 namespace fs = std::filesystem;
+
+// What an archive brings along, beside the scenes.
+fs::path own_file() {
+    return find_program_file().parent_path() / PALPA_SHARE / "fonts/DejaVuSans.ttf";
+}
 
 constexpr const char* usual_files[] = {
     "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
@@ -29,6 +36,7 @@ std::vector<fs::path> list_font_files() {
         if (is_file(own)) files.emplace_back(own);
         return files;
     }
+    if (is_file(own_file())) files.push_back(own_file().lexically_normal());
     for (const char* const file : usual_files)
         if (is_file(file)) files.emplace_back(file);
     return files;

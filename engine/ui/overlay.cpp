@@ -275,14 +275,14 @@ void Overlay::draw(const Readout& readout, const OverlayStatus& status,
     } else if (shows_lesson_ && !lesson_.steps().empty()) {
         draw_lesson(readout, commands, actions);
     }
-    if (shows_overlays_) draw_legend_panel(status.legend, legend_area());
+    if (shows_overlays_) draw_legend_panel(status.legend, area_above_panels());
     draw_warnings(readout, status);
     if (status.recorded_s) draw_recording(*status.recorded_s);
     if (shows_help_) draw_help();
 }
 
 // Above what stands below the picture, however high that is.
-ScreenArea Overlay::legend_area() const {
+ScreenArea Overlay::area_above_panels() const {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ScreenArea area = free_area(screen.x, screen.y);
     for (const char* const name : {lesson_panel, playback_panel, replay_panel, selection_panel}) {
@@ -462,8 +462,7 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
 
 // A red mark and the time, in the lower right corner of what no panel covers.
 void Overlay::draw_recording(double seconds) const {
-    const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    const ScreenArea area = free_area(screen.x, screen.y);
+    const ScreenArea area = area_above_panels();
     const auto whole = static_cast<int>(seconds);
     const std::string text = format_translated("recording {}:{:02}", whole / 60, whole % 60);
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());

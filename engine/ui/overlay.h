@@ -120,7 +120,7 @@ private:
     void follow_restart(const Readout& readout);
     void draw_lesson_step(const Readout& readout, std::size_t count);
     void draw_warnings(const Readout& readout, const OverlayStatus& status);
-    ScreenArea legend_area() const;
+    ScreenArea area_above_panels() const;
     void draw_recording(double seconds) const;
     void draw_help();
 

@@ -1,5 +1,7 @@
 #include "window/window.h"
 
+#include "platform/system.h"
+
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
@@ -229,8 +231,7 @@ std::vector<const char*> Window::vulkan_extensions() const {
     std::uint32_t count = 0;
     const char* const* const names = glfwGetRequiredInstanceExtensions(&count);
     if (!names) {
-        throw PlatformError(
-            "Vulkan cannot draw into a window; install a driver (Debian: mesa-vulkan-drivers)");
+        throw PlatformError(fmt::format("Vulkan cannot draw into a window; {}", vulkan_remedy()));
     }
     return {names, names + count};
 }

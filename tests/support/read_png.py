@@ -17,3 +17,13 @@ def read_png(path):
     raw, stride = zlib.decompress(packed), 4 * width + 1
     assert not any(raw[::stride]), f"{path} has filters"
     return (width, height), b"".join(raw[y * stride + 1:(y + 1) * stride] for y in range(height))
+
+
+NOTABLE = 24  # levels of 255 by which a channel must be off for a pixel to count as different
+
+
+def difference(pixels, others):
+    """Of two pictures of one size: the share of pixels that differ, and the mean difference in levels over all channels."""
+    off = [abs(a - b) for a, b in zip(pixels, others)]
+    count = len(off) // 4
+    return sum(max(off[4 * i:4 * i + 4]) > NOTABLE for i in range(count)) / count, sum(off) / len(off)

@@ -14,7 +14,7 @@ from pathlib import Path
 PROGRAM = os.environ["PALPA_PROGRAM"]
 ROOT = Path(os.environ["PALPA_ROOT"])
 sys.path.append(str(ROOT / "tests" / "support"))
-from read_png import read_png  # noqa: E402
+from read_png import difference, read_png  # noqa: E402
 
 PICTURES = ROOT / "tests" / "data" / "pictures"
 CAMERAS = {"water": "30,15", "hiv": "90,15"}
@@ -29,7 +29,6 @@ ANSWERS = ("activity", "error")
 MARKS = ("--contacts", "in-hand", "--forces", "residues", "--hydrogen-bonds", "none", "--look-at", "inhibitor",
          "--measure", "chain A and resid 50 and name CA; ligand; chain B and resid 50 and name CA")
 
-NOTABLE = 24        # levels of 255 by which a channel must be off for a pixel to count as different
 MOST_DIFFERENT = 0.02
 MOST_MEAN = 1.5     # levels, over all channels
 
@@ -69,11 +68,9 @@ class Pictures(unittest.TestCase):
         size, new = read_png(image)
         golden_size, old = read_png(golden)
         self.assertEqual(size, golden_size)
-        off = [abs(a - b) for a, b in zip(new, old)]
-        pixels = len(off) // 4
-        different = sum(max(off[4 * i:4 * i + 4]) > NOTABLE for i in range(pixels)) / pixels
+        different, mean = difference(new, old)
         self.assertLess(different, MOST_DIFFERENT, "share of pixels that differ")
-        self.assertLess(sum(off) / len(off), MOST_MEAN, "mean difference")
+        self.assertLess(mean, MOST_MEAN, "mean difference")
 
     def test_another_picture_is_told_apart(self):
         with self.assertRaises(AssertionError):

@@ -46,7 +46,7 @@ void run_ticks(Device& device, int ticks, const Step& step) {
     for (int i = 0; i < ticks && noted_interrupt() == 0; ++i) {
         device.write(step(i, device.read()));
         next = std::max(next + std::chrono::milliseconds(1), SteadyClock::now());
-        std::this_thread::sleep_until(next);
+        sleep_exactly_until(next);
     }
     device.write(Vec3::Zero());
 }

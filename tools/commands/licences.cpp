@@ -4,6 +4,7 @@
 #include "charmm/packed_force_field.h"
 #include "core/files.h"
 #include "core/version.h"
+#include "platform/system.h"
 #include "tools/commands/command.h"
 
 #include <fmt/chrono.h>
@@ -40,8 +41,15 @@ constexpr std::array libraries = std::to_array<Library>({
     {"zlib", "ZLIB", "libz", "Zlib", "https://zlib.net", "compressed files"},
     {"GNU C++ library", "", "libstdc++ libgcc_s", "GPL-3.0-or-later WITH GCC-exception-3.1",
      "https://gcc.gnu.org", "C++"},
+#ifdef __MINGW32__
+    {"mingw-w64 runtime", "", "libmingw32", "ZPL-2.1 AND MIT AND LicenseRef-public-domain",
+     "https://www.mingw-w64.org", "C"},
+    {"winpthreads", "", "libwinpthread", "MIT AND BSD-3-Clause", "https://www.mingw-w64.org",
+     "threads"},
+#elif defined(__GLIBC__)
     {"GNU C library", "", "libc libm libdl libpthread", "LGPL-2.1-or-later",
      "https://www.gnu.org/software/libc", "C"},
+#endif
 });
 
 struct LicencesOptions {
@@ -63,10 +71,13 @@ void print_licences_json(const std::vector<std::string>& about) {
     nlohmann::ordered_json json{{"program", {{"version", version_name}, {"licence", "MIT"}}},
                                 {"libraries", nlohmann::ordered_json::array()}};
     for (const Library& library : libraries) {
-        nlohmann::ordered_json row{{"name", library.name},       {"version", version_of(library)},
-                                   {"licence", library.licence}, {"home", library.home},
-                                   {"use", library.use},         {"package", library.package},
-                                   {"files", library.files}};
+        nlohmann::ordered_json row{{"name", library.name},
+                                   {"version", version_of(library)},
+                                   {"licence", library.licence},
+                                   {"home", library.home},
+                                   {"use", library.use},
+                                   {"package", library.package},
+                                   {"files", system_name() == "Linux" ? library.files : ""}};
         json["libraries"].push_back(std::move(row));
     }
     json["force_field"] = about;
@@ -161,7 +172,10 @@ std::string version_of(const Library& library) {
 #ifdef _GLIBCXX_RELEASE
     if (library.files.starts_with("libstdc++")) return std::to_string(_GLIBCXX_RELEASE);
 #endif
-#ifdef __GLIBC__
+#ifdef __MINGW32__
+    if (library.files == "libmingw32")
+        return fmt::format("{}.{}", __MINGW64_VERSION_MAJOR, __MINGW64_VERSION_MINOR);
+#elif defined(__GLIBC__)
     if (library.files.starts_with("libc ")) return fmt::format("{}.{}", __GLIBC__, __GLIBC_MINOR__);
 #endif
     return {};

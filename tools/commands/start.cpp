@@ -5,7 +5,7 @@
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
-#include "platform/display.h"
+#include "platform/system.h"
 #include "scene/find_scene.h"
 #include "tools/commands/screens.h"
 #include "window/window.h"

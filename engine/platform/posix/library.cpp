@@ -13,6 +13,11 @@ std::vector<std::string> list_library_files(std::string_view name,
     return files;
 }
 
+std::string how_to_place_library(std::string_view file) {
+    return "put " + std::string(file) +
+           " where the system finds it, for example into /usr/local/lib, then 'sudo ldconfig'";
+}
+
 SharedLibrary::SharedLibrary(const std::string& file)
     : handle_(dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) {
     if (handle_) return;

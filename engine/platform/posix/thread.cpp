@@ -4,6 +4,7 @@
 #include <sched.h>
 #include <sys/mman.h>
 #include <unistd.h>
+#include <thread>
 
 namespace palpa {
 
@@ -27,5 +28,11 @@ std::string_view real_time_remedy() noexcept {
 }
 
 void lower_priority(int steps) noexcept { (void)!nice(steps); }
+
+void sleep_exactly_until(std::chrono::steady_clock::time_point moment) {
+    std::this_thread::sleep_until(moment);
+}
+
+std::chrono::milliseconds condition_lateness() noexcept { return std::chrono::milliseconds(0); }
 
 }  // namespace palpa

@@ -12,6 +12,10 @@ std::vector<std::string> list_library_files(std::string_view name,
     return {std::string(name) + ".dll"};
 }
 
+std::string how_to_place_library(std::string_view file) {
+    return "put " + std::string(file) + " beside palpa.exe";
+}
+
 SharedLibrary::SharedLibrary(const std::string& file)
     : handle_(LoadLibraryW(to_wide(file).c_str())) {
     if (!handle_) problem_ = file + ": Windows' error " + std::to_string(GetLastError());

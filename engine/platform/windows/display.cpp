@@ -1,7 +1,0 @@
-#include "platform/display.h"
-
-namespace palpa {
-
-bool has_display() { return true; }
-
-}  // namespace palpa
