@@ -20,9 +20,9 @@ class Scripts(unittest.TestCase):
     def test_every_tool_explains_itself(self):
         for name in ("build", "run", "test", "scripts/plot_stroke", "scripts/play_ways_out",
                      "scripts/prepare_entries", "scripts/make_secondary_structure_references",
-                     "scripts/check_style", "scripts/package", "scripts/try_packages",
-                     "scripts/check_windows", "scripts/package_windows", "scripts/try_windows", "windows/build", "windows/libraries",
-                     "scripts/make_manual", "scripts/check_skips",
+                     "scripts/check_style", "scripts/package", "scripts/try_packages", "scripts/release",
+                     "scripts/check_windows", "scripts/package_windows", "scripts/try_windows", "windows/build",
+                     "windows/libraries", "scripts/make_manual", "scripts/check_skips",
                      "scripts/compare_peers",
                      "scripts/compare_tl3", "scripts/csv_table", "scripts/docs_stats", "scripts/mutate",
                      "scripts/plot_adaptive", "scripts/run_table", "scripts/soak", "scripts/wake_up",

@@ -8,11 +8,25 @@
 #include <cerrno>
 #include <system_error>
 
+#ifdef __APPLE__
+#include <mach-o/dyld.h>
+#include <cstdint>
+
+extern char** environ;  // in none of its headers
+#endif
+
 namespace palpa {
 
 std::filesystem::path find_program_file() {
     std::error_code error;
+#ifdef __APPLE__
+    char file[4096];
+    std::uint32_t size = sizeof file;
+    if (_NSGetExecutablePath(file, &size) != 0) return {};
+    return std::filesystem::canonical(file, error);
+#else
     return std::filesystem::read_symlink("/proc/self/exe", error);
+#endif
 }
 
 std::uint64_t own_process_number() noexcept { return static_cast<std::uint64_t>(getpid()); }
