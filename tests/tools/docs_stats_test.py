@@ -39,10 +39,11 @@ class DocsStats(unittest.TestCase):
     def test_many_explained_words_are_found(self):
         with tempfile.TemporaryDirectory() as folder:
             root = pathlib.Path(folder)
-            table = "# A\n\n## Words\n\n| word | meaning |\n| --- | --- |\n" + "| a | b |\n" * 25
-            (root / "README.md").write_text(table + "\n## Limits\n\n| a | b |\n")
+            (root / "scenes").mkdir()
+            table = "# Words\n\n| word | meaning |\n| --- | --- |\n" + "| a | b |\n" * 25
+            (root / "scenes" / "words.md").write_text(table)
             self.assertEqual(count(root).returncode, 0)
-            (root / "README.md").write_text(table + "| a | b |\n")
+            (root / "scenes" / "words.md").write_text(table + "| a | b |\n")
             self.assertIn("explains 26 words", count(root).stderr)
 
     def test_many_readmes_are_found_and_other_pages_are_free(self):
