@@ -1,7 +1,5 @@
 #include "app/live_clock.h"
 
-#include "platform/thread.h"
-
 #include <algorithm>
 
 namespace palpa {
@@ -13,7 +11,7 @@ void LiveClock::wait_for_tick(Moment moment) { wait_awake_until(moment); }
 bool LiveClock::wait_for_period(Moment moment, std::unique_lock<std::mutex>& lock,
                                 std::condition_variable& called,
                                 const std::function<bool()>& is_called) {
-    if (called.wait_until(lock, moment - condition_lateness(), is_called)) return true;
+    if (called.wait_until(lock, moment - lateness_, is_called)) return true;
     while (now() < moment) {
         constexpr std::chrono::milliseconds between{1};
         lock.unlock();

@@ -1,4 +1,4 @@
-// What a system is called, has and offers, for messages that advise its user.
+// Names the system and its parts for messages that advise its user.
 #pragma once
 #include <string_view>
 
@@ -6,18 +6,18 @@ namespace palpa {
 
 std::string_view system_name() noexcept;  // "Linux", "Windows" or "macOS"
 
-// Whether there is a display to open a window on.
+// Returns whether there is a display to open a window on.
 bool has_display();
 
-// Whether the system has the library that drawing needs (Vulkan's loader), and what to do without a
-// driver.
+// Returns whether the system has the library that drawing needs (Vulkan's loader).
 bool has_vulkan() noexcept;
+// Returns advice for a system without a driver.
 std::string_view vulkan_remedy() noexcept;
 
-// The system's list of USB devices, as in "{} shows it": "'lsusb'".
+// The name of what lists USB devices, as in "{} shows it": "'lsusb'".
 std::string_view usb_list_name() noexcept;
 
-// What to do where the library for SpaceMouse and game pads does not start.
+// Returns advice where the library for SpaceMouse and game pads does not start.
 std::string_view hidapi_remedy() noexcept;
 
 }  // namespace palpa

@@ -22,7 +22,8 @@ void lower_priority(int steps = 5) noexcept;
 // Sleeps until that moment as exactly as the system can; never shorter.
 void sleep_exactly_until(std::chrono::steady_clock::time_point moment);
 
-// How late a condition variable may end a wait for a time: who must be in time sleeps that long.
+// How late a condition variable may end a wait for a time. Callers that must not be late stop
+// waiting this much earlier, and sleep.
 std::chrono::milliseconds condition_lateness() noexcept;
 
 // Until that moment: asleep, and awake for the last 80 us, since a system wakes threads late.

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What an archive brings along, beside the scenes.
+// The font of an archive, beside the scenes.
 fs::path own_file() {
     return find_program_file().parent_path() / PALPA_SHARE / "fonts/DejaVuSans.ttf";
 }

@@ -7,7 +7,10 @@
 using namespace palpa;
 
 TEST_CASE("a wait for a period ends at its moment or when it is called", "[app]") {
-    LiveClock clock;
+    // Where condition variables are late it polls: for a part of the wait, or for all of it.
+    const auto lateness = GENERATE(std::chrono::milliseconds(0), std::chrono::milliseconds(16),
+                                   std::chrono::milliseconds(std::chrono::hours(2)));
+    LiveClock clock(lateness);
     std::mutex mutex;
     std::condition_variable called;
     std::atomic<bool> is_called{false};

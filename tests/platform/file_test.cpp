@@ -4,6 +4,7 @@
 
 #include <array>
 #include <catch2/catch.hpp>
+#include <fstream>
 #include <string>
 
 using namespace palpa;
@@ -95,4 +96,22 @@ TEST_CASE("each temporary folder is a new one", "[platform][file]") {
     CHECK(a != b);
     CHECK(fs::is_empty(a));
     CHECK((fs::remove(a) && fs::remove(b)));
+}
+
+TEST_CASE("a path may have any letters, and is UTF-8 in a string", "[platform]") {
+    const std::string name = "Gr\u00f6\u00dfe \u20ac \u6c34 \U0001f9ec.txt";
+    const test::TemporaryFolder folder;
+    const fs::path path = folder.path() / name;
+    CHECK(path.filename().string() == name);
+    CHECK(path.filename() == fs::path(u8"Gr\u00f6\u00dfe \u20ac \u6c34 \U0001f9ec.txt"));
+    std::error_code error;
+    {
+        File file(path, FileUse::Create, error);
+        REQUIRE_FALSE(error);
+        file.write("text", error);
+    }
+    const fs::directory_iterator listed(folder.path());
+    REQUIRE(listed != fs::directory_iterator());
+    CHECK(listed->path() == path);
+    CHECK(std::ifstream(path).good());
 }

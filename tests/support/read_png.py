@@ -20,6 +20,8 @@ def read_png(path):
 
 
 NOTABLE = 24  # levels of 255 by which a channel must be off for a pixel to count as different
+MOST_DIFFERENT = 0.02  # share of pixels, in two pictures that count as alike
+MOST_MEAN = 1.5  # levels, over all channels
 
 
 def difference(pixels, others):

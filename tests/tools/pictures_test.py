@@ -14,7 +14,7 @@ from pathlib import Path
 PROGRAM = os.environ["PALPA_PROGRAM"]
 ROOT = Path(os.environ["PALPA_ROOT"])
 sys.path.append(str(ROOT / "tests" / "support"))
-from read_png import difference, read_png  # noqa: E402
+from read_png import MOST_DIFFERENT, MOST_MEAN, difference, read_png  # noqa: E402
 
 PICTURES = ROOT / "tests" / "data" / "pictures"
 CAMERAS = {"water": "30,15", "hiv": "90,15"}
@@ -29,8 +29,6 @@ ANSWERS = ("activity", "error")
 MARKS = ("--contacts", "in-hand", "--forces", "residues", "--hydrogen-bonds", "none", "--look-at", "inhibitor",
          "--measure", "chain A and resid 50 and name CA; ligand; chain B and resid 50 and name CA")
 
-MOST_DIFFERENT = 0.02
-MOST_MEAN = 1.5     # levels, over all channels
 
 
 def draw(scene, image, *options):

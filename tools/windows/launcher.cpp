@@ -6,8 +6,8 @@
 
 namespace {
 
-// The end of what the program prints until it ends, which has the error. The pipe may outlive it,
-// in programs that it has started.
+// Collects the program's error messages until it ends, and returns the last of them. The pipe may
+// outlive the program, in others that it has started.
 std::string read_last(HANDLE program, HANDLE pipe) {
     constexpr std::size_t most = 2000;
     constexpr DWORD between_ms = 50;
@@ -33,7 +33,7 @@ std::wstring to_wide(const std::string& utf8) {
     return wide;
 }
 
-// What follows the program's own name in the command line, as it was typed.
+// Returns the command line behind the program's own name, as it was typed.
 std::wstring read_arguments() {
     const wchar_t* at = GetCommandLineW();
     const wchar_t end = *at == L'"' ? L'"' : L' ';
@@ -62,7 +62,10 @@ int WINAPI wWinMain(HINSTANCE /*program*/, HINSTANCE /*none*/, PWSTR /*line*/, i
     STARTUPINFOW start{};
     start.cb = sizeof start;
     start.dwFlags = STARTF_USESTDHANDLES;
-    start.hStdOutput = start.hStdError = to;
+    // Lists that it prints would push the error out of the box.
+    start.hStdOutput = CreateFileW(L"NUL", GENERIC_WRITE, FILE_SHARE_READ | FILE_SHARE_WRITE,
+                                   &inherited, OPEN_EXISTING, 0, nullptr);
+    start.hStdError = to;
     PROCESS_INFORMATION child{};
     if (!CreateProcessW(program.c_str(), line.data(), nullptr, nullptr, TRUE, CREATE_NO_WINDOW,
                         nullptr, nullptr, &start, &child)) {

@@ -14,8 +14,12 @@ std::vector<std::string> list_library_files(std::string_view name,
 }
 
 std::string how_to_place_library(std::string_view file) {
-    return "put " + std::string(file) +
-           " where the system finds it, for example into /usr/local/lib, then 'sudo ldconfig'";
+    std::string advice =
+        "put " + std::string(file) + " where the system finds it, for example into /usr/local/lib";
+#ifndef __APPLE__
+    advice += ", then 'sudo ldconfig'";
+#endif
+    return advice;
 }
 
 SharedLibrary::SharedLibrary(const std::string& file)

@@ -16,6 +16,8 @@ std::string_view vulkan_remedy() noexcept {
 }
 
 std::string_view usb_list_name() noexcept { return "the Device Manager"; }
-std::string_view hidapi_remedy() noexcept { return "it needs Windows 8 or newer"; }
+std::string_view hidapi_remedy() noexcept {
+    return "start the program again; if that does not help, report it";
+}
 
 }  // namespace palpa

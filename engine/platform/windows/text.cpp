@@ -33,9 +33,10 @@ std::string to_utf8(std::wstring_view wide) {
 }  // namespace palpa
 
 #ifdef __MINGW32__
-// GCC's std::filesystem::path takes char as what mbrtowc() does, and msvcrt.dll has no UTF-8. The
-// linker puts this one into its place. A character beyond 16 bits is given in two calls: the first
-// takes three of its four bytes, and `state` keeps the second half until the last one.
+// Reads a character of UTF-8. GCC's std::filesystem::path converts char by mbrtowc(), and
+// msvcrt.dll has no UTF-8, so the linker puts this function into its place. A character beyond 16
+// bits is given in two calls: the first takes three of its four bytes, and `state` keeps the second
+// half until the last one.
 extern "C" std::size_t __wrap_mbrtowc(wchar_t* to, const char* from, std::size_t count,
                                       mbstate_t* state) {
     constexpr auto wrong = static_cast<std::size_t>(-1), incomplete = static_cast<std::size_t>(-2);
