@@ -1,5 +1,7 @@
 #include "devices/mouse_handle.h"
 
+#include "core/repeatable.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,10 +10,11 @@ namespace palpa {
 
 double calm_mouse_stiffness(const MouseHandleSettings& settings) noexcept {
     const double K = settings.stiffness_N_per_m;
-    const double kept = std::exp(-K * servo_tick_s / settings.damping_N_s_per_m);
+    const double kept = repeatable::exp(-K * servo_tick_s / settings.damping_N_s_per_m);
     // The phase of z^d (z - a) on the unit circle grows with the angle of z; pi makes it negative.
     const auto phase_of = [&](double angle) {
-        return settings.delay_ticks * angle + std::atan2(std::sin(angle), std::cos(angle) - kept);
+        return settings.delay_ticks * angle +
+               repeatable::atan2(repeatable::sin(angle), repeatable::cos(angle) - kept);
     };
     double below = 0, above = std::numbers::pi;
     constexpr int halvings = 60;
@@ -19,7 +22,8 @@ double calm_mouse_stiffness(const MouseHandleSettings& settings) noexcept {
         const double middle = 0.5 * (below + above);
         (phase_of(middle) < std::numbers::pi ? below : above) = middle;
     }
-    const double magnitude = std::hypot(std::sin(above), std::cos(above) - kept);
+    const double magnitude =
+        repeatable::hypot(repeatable::sin(above), repeatable::cos(above) - kept);
     return K * magnitude / (1 - kept);
 }
 
@@ -35,7 +39,8 @@ MouseHandleSettings mouse_handle_of(const std::optional<HandModel>& hand) noexce
 MouseHandle::MouseHandle(const MouseHandleSettings& settings)
     : settings_(settings),
       time_(settings.orders),
-      kept_(std::exp(-settings.stiffness_N_per_m * servo_tick_s / settings.damping_N_s_per_m)) {
+      kept_(repeatable::exp(-settings.stiffness_N_per_m * servo_tick_s /
+                            settings.damping_N_s_per_m)) {
     spec_.name = "mouse and keys";
     spec_.is_real = false;
     spec_.cap_N_per_m = 0.5 * calm_mouse_stiffness(settings);

@@ -236,7 +236,7 @@ PlayedRow PlayedHandle::row_now() const noexcept {
     PlayedRow row = before;
     row.handle_m += share * (after.handle_m - before.handle_m);
     row.turn_rad =
-        rotation_vector_of(turn_of(before.turn_rad).slerp(share, turn_of(after.turn_rad)));
+        rotation_vector_of(turn_between(turn_of(before.turn_rad), turn_of(after.turn_rad), share));
     return row;
 }
 

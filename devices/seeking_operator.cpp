@@ -1,5 +1,6 @@
 #include "devices/seeking_operator.h"
 
+#include "core/repeatable.h"
 #include "haptics/device.h"
 
 #include <algorithm>
@@ -50,8 +51,8 @@ void SeekingOperator::feel(double force_newton, double distance) {
     intended_m_ += speed * tick_s;
     unsteady_m_ = wander(unsteady_m_, drift_m, drift_s, draws_);
     const double turns = tremor_hz * static_cast<double>(tick_) * tick_s;
-    tremor_m_ = tremor_m *
-                (std::sin(2 * std::numbers::pi * turns + tremor_phase_) - std::sin(tremor_phase_));
+    tremor_m_ = tremor_m * (repeatable::sin(2 * std::numbers::pi * turns + tremor_phase_) -
+                            repeatable::sin(tremor_phase_));
 }
 
 void SeekingOperator::perceive(double force_newton) {

@@ -7,8 +7,9 @@ An arrow is written in one place only, the DEPENDS of a palpa_module(...). A fil
 its own module reaches along the arrows. Fails, with file and line, on an include that no arrow
 allows, on an include of a folder that is no module, on an arrow to a module that does not exist,
 on a source that no palpa_module lists, on a cycle of arrows, on a header of POSIX or Windows
-outside of the module `platform`, and where the table of modules in engine/README.md says anything
-else.
+outside of the module `platform`, on functions of the standard library and Eigen that round otherwise
+on other systems where core/repeatable.h has them, and where the table of modules in engine/README.md
+says anything else.
 """
 import re
 import sys
@@ -20,6 +21,9 @@ COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 SOURCES = ("SOURCES", "POSIX", "WINDOWS")
 SYSTEM = re.compile(r"(sys|linux|arpa|net|netinet)/|(aio|dirent|dlfcn|fcntl|glob|grp|io|langinfo|poll|pthread"
                     r"|pwd|sched|semaphore|signal|spawn|strings|syslog|termios|unistd|utime|windows|winsock2?)\.h$")
+# What decides where molecules and hands go.
+REPEATABLE = {"assembly", "charmm", "core", "devices", "field", "forces", "haptics", "math", "simulation", "statics"}
+ROUNDED = re.compile(r"std::(?:a?(?:sin|cos|tan)h?|atan2|exp2?|expm1|log(?:2|10|1p)?|pow|cbrt|hypot|erfc?)\(|AngleAxis\w*\(|slerp\(|computeDirect\(")
 KEYWORDS = {*SOURCES, "DEPENDS", "LIBRARIES"}
 FOLDERS = ("engine", "devices", "tools", "tests")
 SUFFIXES = {".h", ".cpp"}
@@ -139,6 +143,9 @@ def check_file(root, path, folders, modules):
     # Comments may stand inside a line; their line ends are kept for the numbers.
     text = COMMENT.sub(lambda comment: "\n" * comment.group().count("\n"), path.read_text())
     for number, line in enumerate(text.splitlines(), 1):
+        if owner in REPEATABLE and (rounded := ROUNDED.search(line.partition("//")[0])):
+            problems.append(f"{path.relative_to(root)}:{number}: {rounded.group().rstrip('(')} rounds otherwise on other "
+                            "systems; expected a function of core/repeatable.h or math/vec.h")
         match = INCLUDE.match(line)
         if not match:
             continue

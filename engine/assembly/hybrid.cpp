@@ -123,17 +123,15 @@ void move_clusters(const HybridTree& hybrid, std::span<const double> joint_turns
             const std::uint32_t molecule = hybrid.tree.molecule_of[c];
             const Vec6& move = base_moves[molecule];
             const Vec3 turn = move.head<3>(), &ground = passes.points[c];
-            const double angle = turn.norm();
             motion.rotation.setIdentity();
-            if (angle > 0)
-                motion.rotation = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+            if (turn.norm() > 0) motion.rotation = turn_of(turn).toRotationMatrix();
             motion.translation = ground - motion.rotation * ground + move.tail<3>();
             std::optional<Vec3>& guided = passes.guides[molecule].point;
             if (guided) guided = motion.rotation * *guided + motion.translation;
         } else {
             // First about the axis where it was, then with the parent.
             const RigidMotion& parent = state.motions[hybrid.tree.bodies.bodies[c].parent];
-            const Mat3 turn = Eigen::AngleAxisd(joint_turns[c], passes.axes[c]).toRotationMatrix();
+            const Mat3 turn = turn_by(joint_turns[c], passes.axes[c]).toRotationMatrix();
             const Vec3 shift = passes.points[c] - turn * passes.points[c];
             motion.rotation = parent.rotation * turn;
             motion.translation = parent.rotation * shift + parent.translation;

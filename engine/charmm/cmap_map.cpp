@@ -14,13 +14,11 @@ namespace {
 // sqrt(3) - 2 per step from the diagonal, in both directions around the period.
 std::vector<double> build_inverse(std::size_t size) {
     const double decay = std::sqrt(3.0) - 2.0;
-    const double period = std::pow(decay, static_cast<double>(size));
+    std::vector<double> power(size + 1, 1.0);
+    for (std::size_t k = 1; k <= size; ++k) power[k] = decay * power[k - 1];
     std::vector<double> inverse(size);
-    for (std::size_t k = 0; k < size; ++k) {
-        inverse[k] = (std::pow(decay, static_cast<double>(k)) +
-                      std::pow(decay, static_cast<double>(size - k))) /
-                     (2.0 * std::sqrt(3.0) * (1.0 - period));
-    }
+    for (std::size_t k = 0; k < size; ++k)
+        inverse[k] = (power[k] + power[size - k]) / (2.0 * std::sqrt(3.0) * (1.0 - power[size]));
     return inverse;
 }
 

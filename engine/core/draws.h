@@ -1,6 +1,8 @@
 // Random numbers from a seed, identical on every machine (the standard library's distributions are
 // not). Make one draw per statement: C++ does not fix the order within an expression.
 #pragma once
+#include "core/repeatable.h"
+
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +20,7 @@ public:
     double between(double low, double high) { return low + (high - low) * share(); }
     // Uniform in the logarithm between low and high.
     double scale(double low, double high) {
-        return std::exp(between(std::log(low), std::log(high)));
+        return repeatable::exp(between(repeatable::log(low), repeatable::log(high)));
     }
     std::size_t below(std::size_t count) { return random_() % count; }
 
@@ -29,10 +31,10 @@ public:
             spare_.reset();
             return kept;
         }
-        const double radius = std::sqrt(-2 * std::log(1 - share()));
+        const double radius = std::sqrt(-2 * repeatable::log(1 - share()));
         const double angle = 2 * std::numbers::pi * share();
-        spare_ = radius * std::sin(angle);
-        return radius * std::cos(angle);
+        spare_ = radius * repeatable::sin(angle);
+        return radius * repeatable::cos(angle);
     }
 
 private:

@@ -182,7 +182,7 @@ public:
     static constexpr bool takes_root = End != VanDerWaalsCutoff::SmoothSwitch;
 
     explicit HWY_INLINE VanDerWaals(const PairScheme& scheme) : switching_(scheme) {
-        const double c3 = std::pow(scheme.cutoff, 3), m3 = std::pow(scheme.switch_from, 3);
+        const double c = scheme.cutoff, m = scheme.switch_from, c3 = c * c * c, m3 = m * m * m;
         k12_ = all(c3 * c3 / (c3 * c3 - m3 * m3));
         k12_end_ = all(1 / (c3 * c3 - m3 * m3));
         k6_ = all(c3 / (c3 - m3));

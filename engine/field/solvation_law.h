@@ -1,6 +1,7 @@
 // Energy of one pair of atoms by EEF1, and its first two derivatives: how much of each atom's water
 // the other one's volume takes. What every sum of solvation in double is made of.
 #pragma once
+#include "core/repeatable.h"
 #include "field/cutoff.h"
 #include "field/pair_field.h"
 
@@ -33,7 +34,7 @@ struct SolvationPair {
 };
 
 struct TrueExponential {
-    double operator()(double x) const noexcept { return std::exp(-x * x); }
+    double operator()(double x) const noexcept { return repeatable::exp(-x * x); }
 };
 
 // `exp_of_minus_square` is for those who compare with a program that has a table of it.

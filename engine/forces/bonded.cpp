@@ -1,5 +1,6 @@
 #include "forces/bonded.h"
 
+#include "core/repeatable.h"
 #include "forces/torsion.h"
 
 #include <Eigen/Geometry>
@@ -70,7 +71,7 @@ double add_angle_forces(std::span<const Angle> angles, std::span<const Vec3> pos
         const Vec3 v = positions[angle.c] - positions[angle.b];
         const Vec3 normal = u.cross(v);
         const double sine = normal.norm();  // times |u| |v|
-        const double bend = std::atan2(sine, u.dot(v)) - angle.theta0;
+        const double bend = repeatable::atan2(sine, u.dot(v)) - angle.theta0;
         energy += angle.k * bend * bend;
         const double u2 = u.squaredNorm(), v2 = v.squaredNorm();
         if (!(u2 > shortest * shortest && v2 > shortest * shortest &&
@@ -94,8 +95,8 @@ double add_dihedral_forces(std::span<const Dihedral> dihedrals, std::span<const 
     for (const Dihedral& dihedral : dihedrals) {
         const Torsion torsion = evaluate_torsion(dihedral, positions);
         const double x = dihedral.multiplicity * torsion.angle - dihedral.phase;
-        energy += dihedral.k * (1.0 + std::cos(x));
-        const double slope = -dihedral.k * dihedral.multiplicity * std::sin(x);
+        energy += dihedral.k * (1.0 + repeatable::cos(x));
+        const double slope = -dihedral.k * dihedral.multiplicity * repeatable::sin(x);
         add_torsion_forces(dihedral, torsion, slope, forces);
     }
     return energy;

@@ -1,6 +1,7 @@
 #include "forces/fast_bonded.h"
 
 #include "core/assertion.h"
+#include "core/repeatable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -61,8 +62,8 @@ void build_dihedrals(const Topology& topology, FastBonded& bonded) {
             series.sine.resize(entry.order);
             for (const Dihedral& term : *entry.terms) {
                 const auto n = static_cast<std::size_t>(term.multiplicity);
-                series.cosine[n - 1].at[t] += term.k * std::cos(term.phase);
-                series.sine[n - 1].at[t] += term.k * std::sin(term.phase);
+                series.cosine[n - 1].at[t] += term.k * repeatable::cos(term.phase);
+                series.sine[n - 1].at[t] += term.k * repeatable::sin(term.phase);
                 bonded.dihedral_constant += term.k;
             }
         });
@@ -173,16 +174,16 @@ FastBonded build_fast_bonded(const Topology& topology) {
         [](const Angle& term) { return std::array{term.a, term.b, term.c}; },
         [](AngleNumbers& numbers, std::size_t t, const Angle& term) {
             numbers.k.at[t] = term.k;
-            numbers.cos_theta0.at[t] = std::cos(term.theta0);
-            numbers.sin_theta0.at[t] = std::sin(term.theta0);
+            numbers.cos_theta0.at[t] = repeatable::cos(term.theta0);
+            numbers.sin_theta0.at[t] = repeatable::sin(term.theta0);
         });
     bonded.impropers = build_blocks<4, ImproperNumbers>(
         std::span<const Improper>(topology.impropers),
         [](const Improper& term) { return Four{term.a, term.b, term.c, term.d}; },
         [](ImproperNumbers& numbers, std::size_t t, const Improper& term) {
             numbers.k.at[t] = term.k;
-            numbers.cos_psi0.at[t] = std::cos(term.psi0);
-            numbers.sin_psi0.at[t] = std::sin(term.psi0);
+            numbers.cos_psi0.at[t] = repeatable::cos(term.psi0);
+            numbers.sin_psi0.at[t] = repeatable::sin(term.psi0);
         });
     build_dihedrals(topology, bonded);
     return bonded;

@@ -122,7 +122,7 @@ PairHessian PairHessianLaw::van_der_waals(double r2, const LennardJonesPair& pai
     if (r2 <= m2_) return lennard_jones_jet(r2, pair).hessian();
     const double rmin6 = integer_power(pair.rmin, 6);
     const double a = pair.epsilon * rmin6 * rmin6, b = 2 * pair.epsilon * rmin6;
-    const double c3 = c_ * c2_, m3 = std::pow(m2_, 1.5);
+    const double c3 = c_ * c2_, m3 = m2_ * std::sqrt(m2_);
     const Jet left6 = power(-6, r2) + constant(-1 / (c3 * c3));
     const Jet left3 = power(-3, r2) + constant(-1 / c3);
     return (a * c3 * c3 / (c3 * c3 - m3 * m3) * (left6 * left6) +

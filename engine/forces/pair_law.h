@@ -2,6 +2,7 @@
 // sum. Without branches or roots, so that compilers can vectorise it.
 #pragma once
 #include "charmm/topology.h"
+#include "core/repeatable.h"
 #include "forces/nonbonded.h"
 
 #include <algorithm>
@@ -119,7 +120,7 @@ private:
         const double s4 = -3.0 * (c2_ + m2_) * inverse_width_;
         const double s6 = 2.0 * inverse_width_;
         if constexpr (DistanceDielectric) {  // force 2/r^3
-            return s0 * (inverse_r * inverse_r - inverse_c2_) + s2 * std::log(c2_ / r2) +
+            return s0 * (inverse_r * inverse_r - inverse_c2_) + s2 * repeatable::log(c2_ / r2) +
                    s4 * (c2_ - r2) + s6 / 2.0 * (c2_ * c2_ - r2 * r2);
         }
         const double r = r2 * inverse_r;  // force 1/r^2

@@ -1,6 +1,7 @@
 #include "forces/solvation.h"
 
 #include "core/assertion.h"
+#include "core/repeatable.h"
 #include "forces/solvation_law.h"
 
 #include <cmath>
@@ -66,7 +67,8 @@ struct TabulatedExponential {
         constexpr double steps = 100, end = 350, digits = 1e5;
         const double n = std::floor(steps * std::abs(x));
         if (n >= end) return 0;
-        return std::round(digits * std::exp(-std::pow((n + 0.5) / steps, 2))) / digits;
+        const double at = (n + 0.5) / steps;
+        return std::round(digits * repeatable::exp(-at * at)) / digits;
     }
 };
 

@@ -1,5 +1,6 @@
 #include "forces/term_hessians.h"
 
+#include "core/repeatable.h"
 #include "forces/torsion.h"
 #include "math/spatial.h"
 
@@ -80,7 +81,7 @@ TermHessian<2> find_angle_hessian(const Angle& angle, const Vec3& u, const Vec3&
                                     (s * length_u);
     second.bottomLeftCorner<3, 3>() = second.topRightCorner<3, 3>().transpose();
 
-    const double first = 2 * angle.k * (std::atan2(s, c) - angle.theta0);
+    const double first = 2 * angle.k * (repeatable::atan2(s, c) - angle.theta0);
     Eigen::Matrix<double, 6, 1> slope;
     slope << p, q;
     result.gradient = first * slope;
@@ -103,7 +104,7 @@ TorsionHessian find_torsion_hessian(const Vec3& F, const Vec3& G, const Vec3& H)
     const double A_squared = A.squaredNorm(), B_squared = B.squaredNorm(),
                  L_squared = G.squaredNorm();
     const double L = std::sqrt(L_squared);
-    TorsionHessian result{std::atan2(L * H.dot(A), A.dot(B)), decltype(result.slope)::Zero(),
+    TorsionHessian result{repeatable::atan2(L * H.dot(A), A.dot(B)), decltype(result.slope)::Zero(),
                           decltype(result.hessian)::Zero()};
     if (!(A_squared > 0 && B_squared > 0 && L > 0)) return result;
     constexpr double guard2 = torsion_guard * torsion_guard;
@@ -137,7 +138,7 @@ TorsionHessian find_torsion_hessian(const Vec3& F, const Vec3& G, const Vec3& H)
 
 Slopes find_slopes(const Dihedral& dihedral, double angle) noexcept {
     const double n = dihedral.multiplicity, x = n * angle - dihedral.phase;
-    return {-dihedral.k * n * std::sin(x), -dihedral.k * n * n * std::cos(x)};
+    return {-dihedral.k * n * repeatable::sin(x), -dihedral.k * n * n * repeatable::cos(x)};
 }
 
 Slopes find_slopes(const Improper& improper, double angle) noexcept {

@@ -1,8 +1,9 @@
 #include "forces/torsion.h"
 
+#include "core/repeatable.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 
 namespace palpa {
 
@@ -12,7 +13,7 @@ Torsion evaluate_torsion(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3
     const Vec3 A = F.cross(G), B = H.cross(G);
     const double A_squared = A.squaredNorm(), B_squared = B.squaredNorm(), length = G.norm();
 
-    Torsion torsion{std::atan2(length * H.dot(A), A.dot(B)), {}};
+    Torsion torsion{repeatable::atan2(length * H.dot(A), A.dot(B)), {}};
     torsion.gradient.fill(Vec3::Zero());
     if (!(A_squared > 0 && B_squared > 0 && length > 0)) return torsion;
 

@@ -1,5 +1,7 @@
 #include "haptics/gains.h"
 
+#include "core/repeatable.h"
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -80,8 +82,9 @@ std::optional<PrintedForceLaw> PrintedForceLaw::find_calibrated(const Parameters
 }
 
 double PrintedForceLaw::value(double F_m) const noexcept {
-    return alpha_1_ * std::atan(delta_1_ * F_m) +
-           alpha_2_ * (std::atan(delta_2_ * (F_m - F_0_)) + std::atan(delta_2_ * (F_m + F_0_)));
+    return alpha_1_ * repeatable::atan(delta_1_ * F_m) +
+           alpha_2_ * (repeatable::atan(delta_2_ * (F_m - F_0_)) +
+                       repeatable::atan(delta_2_ * (F_m + F_0_)));
 }
 
 double PrintedForceLaw::slope(double F_m) const noexcept {
@@ -106,19 +109,21 @@ PerceptualForceLaw::PerceptualForceLaw(const Parameters& p) noexcept
       F_h_lo_(p.F_h_lo),
       F_h_hi_(p.F_h_hi),
       F_h_limit_(p.F_h_limit),
-      exponent_(std::log(p.F_h_hi / p.F_h_lo) / std::log(p.F_hi / p.F_lo)),
+      exponent_(repeatable::log(p.F_h_hi / p.F_h_lo) / repeatable::log(p.F_hi / p.F_lo)),
       slope_at_hi_(exponent_ * p.F_h_hi / p.F_hi) {}
 
 PerceptualForceLaw PerceptualForceLaw::for_range(double F_lo, double F_hi) noexcept {
     // Rounding is not to take the weakest below what must be felt of it.
     constexpr double rounding = 1e-14;
     const double ratio = F_hi / F_lo;
-    const double power = std::min(1.0, std::log(most_felt / least_felt) / std::log(ratio));
+    const double power =
+        std::min(1.0, repeatable::log(most_felt / least_felt) / repeatable::log(ratio));
     const double joint_at = F_lo / 2;
     return PerceptualForceLaw(
         {.F_lo = joint_at,
          .F_hi = F_hi,
-         .F_h_lo = most_felt * std::pow(joint_at / F_hi, power) * (1 + rounding),
+         .F_h_lo =
+             most_felt * repeatable::exp(power * repeatable::log(joint_at / F_hi)) * (1 + rounding),
          .F_h_hi = most_felt,
          .F_h_limit = 3});
 }
@@ -130,11 +135,11 @@ double PerceptualForceLaw::value(double F_m) const noexcept {
         const double above = room - room / (1 + slope_at_hi_ * (F - F_hi_) / room);
         return std::copysign(F_h_hi_ + above, F_m);
     }
-    const double x = std::log(F / F_lo_);
+    const double x = repeatable::log(F / F_lo_);
     if (!(x > -joint)) return F_h_lo_ / F_lo_ * F_m;
     const double into = x + joint;
     const double y = x < joint ? x - (1 - exponent_) / (4 * joint) * into * into : exponent_ * x;
-    return std::copysign(F_h_lo_ * std::exp(y), F_m);
+    return std::copysign(F_h_lo_ * repeatable::exp(y), F_m);
 }
 
 double PerceptualForceLaw::slope(double F_m) const noexcept {
@@ -143,7 +148,7 @@ double PerceptualForceLaw::slope(double F_m) const noexcept {
         const double t = 1 + slope_at_hi_ * (F - F_hi_) / (F_h_limit_ - F_h_hi_);
         return slope_at_hi_ / (t * t);
     }
-    const double x = std::log(F / F_lo_);
+    const double x = repeatable::log(F / F_lo_);
     if (!(x > -joint)) return F_h_lo_ / F_lo_;
     const double exponent = x < joint ? 1 - (1 - exponent_) / (2 * joint) * (x + joint) : exponent_;
     return exponent * value(F) / F;
@@ -156,13 +161,13 @@ double PerceptualForceLaw::inverse(double F_h) const noexcept {
         const double above = magnitude - F_h_hi_, room = F_h_limit_ - F_h_hi_;
         return std::copysign(F_hi_ + above * room / (slope_at_hi_ * (F_h_limit_ - magnitude)), F_h);
     }
-    const double y = std::log(magnitude / F_h_lo_);
+    const double y = repeatable::log(magnitude / F_h_lo_);
     if (!(y > -joint)) return F_h * F_lo_ / F_h_lo_;
-    if (y >= exponent_ * joint) return std::copysign(F_lo_ * std::exp(y / exponent_), F_h);
+    if (y >= exponent_ * joint) return std::copysign(F_lo_ * repeatable::exp(y / exponent_), F_h);
     // The parabola: y + joint = z - c z², z = x + joint.
     const double c = (1 - exponent_) / (4 * joint), from_start = y + joint;
     const double z = 2 * from_start / (1 + std::sqrt(1 - 4 * c * from_start));
-    return std::copysign(F_lo_ * std::exp(z - joint), F_h);
+    return std::copysign(F_lo_ * repeatable::exp(z - joint), F_h);
 }
 
 double hand_force(const ForceLaw& law, double F_m) noexcept {
@@ -213,13 +218,13 @@ double largest_felt(const Mat3& felt) noexcept {
 PrintedDisplacementLaw::PrintedDisplacementLaw(const Parameters& p) noexcept
     : A_dmin_(p.A_dmin),
       A_dmax_(p.A_dmax),
-      beta_((p.A_dmax - p.A_dmin) / (pi / 2 - std::atan(-p.gamma * p.F_off))),
+      beta_((p.A_dmax - p.A_dmin) / (pi / 2 - repeatable::atan(-p.gamma * p.F_off))),
       gamma_(p.gamma),
       F_off_(p.F_off),
-      atan_at_0_(std::atan(-p.F_off * p.gamma)) {}
+      atan_at_0_(repeatable::atan(-p.F_off * p.gamma)) {}
 
 double PrintedDisplacementLaw::value(double F_m, double /*stiffness*/) const noexcept {
-    return A_dmin_ + beta_ * (std::atan((std::abs(F_m) - F_off_) * gamma_) - atan_at_0_);
+    return A_dmin_ + beta_ * (repeatable::atan((std::abs(F_m) - F_off_) * gamma_) - atan_at_0_);
 }
 
 double PrintedDisplacementLaw::slope(double F_m, double /*stiffness*/) const noexcept {
@@ -230,18 +235,18 @@ double PrintedDisplacementLaw::slope(double F_m, double /*stiffness*/) const noe
 double PrintedDisplacementLaw::inverse(double A_d) const noexcept {
     if (A_d <= A_dmin_) return 0;
     if (A_d >= A_dmax_) return infinity;
-    return std::max(0.0, F_off_ + std::tan((A_d - A_dmin_) / beta_ + atan_at_0_) / gamma_);
+    return std::max(0.0, F_off_ + repeatable::tan((A_d - A_dmin_) / beta_ + atan_at_0_) / gamma_);
 }
 
 RepairedDisplacementLaw::RepairedDisplacementLaw(const Parameters& p) noexcept
     : printed_(p.printed), length_m_(p.length_m) {}
 
 double RepairedDisplacementLaw::value(double F_m, double stiffness) const noexcept {
-    return printed_.value(std::hypot(F_m, length_m_ * stiffness));
+    return printed_.value(repeatable::hypot(F_m, length_m_ * stiffness));
 }
 
 double RepairedDisplacementLaw::slope(double F_m, double stiffness) const noexcept {
-    const double together = std::hypot(F_m, length_m_ * stiffness);
+    const double together = repeatable::hypot(F_m, length_m_ * stiffness);
     return together == 0 ? 0 : printed_.slope(together) * (F_m / together);
 }
 

@@ -1,5 +1,6 @@
 #include "haptics/guarded.h"
 
+#include "core/repeatable.h"
 #include "core/units.h"
 #include "haptics/device.h"
 
@@ -193,7 +194,8 @@ Followed follow_handle(const GuardedSettings& settings, const Surroundings& arou
     const Vec3 gone = follow(settings, around, tried, turn_of(done.share * turn), state);
     done.moved_m = gone == tried ? Vec3(done.share * asked.moved_m)
                                  : Vec3(units::metre_per_angstrom * (gain.tensor * gone));
-    const double turned = state.molecule.orientation.angularDistance(before);
+    const double turned =
+        rotation_vector_of(state.molecule.orientation * before.conjugate()).norm();
     state.allowance_angstrom = std::max(0.0, most - gone.norm() - turned * radius);
     return done;
 }
@@ -210,7 +212,7 @@ Vec3 find_remainder(const GuardedGain& gain, const GuardedState& state) noexcept
 // limits what the handle feels of that in a tick.
 void update_blend(const GuardedSettings& settings, bool is_relaxed, GuardedState& state) noexcept {
     const Vec3 before = state.blend_residual_newton;
-    double left = std::exp(-4 * servo_tick_s / std::max(state.blend_s, servo_tick_s));
+    double left = repeatable::exp(-4 * servo_tick_s / std::max(state.blend_s, servo_tick_s));
     state.blend_residual_newton *= left;
     if (!is_relaxed) return;
     const auto felt_with = [&](const Vec3& residual) {
@@ -445,7 +447,7 @@ GuardedTick step_guarded(const GuardedSettings& settings, const LocalContactMode
         state.revision = settings.revision;
         state.holds_another = false;
     }
-    state.law_blend_residual_newton *= std::exp(-servo_tick_s / law_glide_s);
+    state.law_blend_residual_newton *= repeatable::exp(-servo_tick_s / law_glide_s);
     state.law_newton = law + state.law_blend_residual_newton;
     const double remember = share_filter_s / (share_filter_s + servo_tick_s);
     state.wanted_m = remember * state.wanted_m + wanted.norm();

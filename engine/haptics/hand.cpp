@@ -57,7 +57,7 @@ HandTarget find_target(const std::vector<HandWaypoint>& path, double time_s) noe
     const double from_s = (next - 1)->time_s;
     const double share = minimum_jerk((time_s - from_s) / (next->time_s - from_s));
     return {from.place_m + share * (to.place_m - from.place_m),
-            from.orientation.slerp(share, to.orientation)};
+            turn_between(from.orientation, to.orientation, share)};
 }
 
 }  // namespace palpa

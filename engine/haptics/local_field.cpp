@@ -1,10 +1,12 @@
 #include "haptics/local_field.h"
 
+#include "core/repeatable.h"
 #include "core/units.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace palpa {
 namespace {
@@ -190,9 +192,17 @@ LocalForce evaluate_local(const ContactModel& model, const LocalField& field,
 }
 
 double extreme_stiffness(const Mat3& stiffness) noexcept {
-    Eigen::SelfAdjointEigenSolver<Mat3> solver;
-    solver.computeDirect(stiffness, Eigen::EigenvaluesOnly);
-    const double lowest = solver.eigenvalues()(0), highest = solver.eigenvalues()(2);
+    // The eigenvalues of a symmetric matrix of three rows are mean + 2 spread cos(angle + 2 k pi/3)
+    // (O. K. Smith, Commun. ACM 4, 168, 1961).
+    Mat3 rest = stiffness.selfadjointView<Eigen::Lower>();
+    const double mean = rest.trace() / 3;
+    rest.diagonal().array() -= mean;
+    const double spread = std::sqrt(rest.squaredNorm() / 6);
+    if (spread == 0) return mean;
+    const double cosine = std::clamp(0.5 * Mat3(rest / spread).determinant(), -1.0, 1.0);
+    const double angle = repeatable::atan2(std::sqrt(1 - cosine * cosine), cosine) / 3;
+    const double highest = mean + 2 * spread * repeatable::cos(angle);
+    const double lowest = mean + 2 * spread * repeatable::cos(angle + 2 * std::numbers::pi / 3);
     return std::abs(lowest) > std::abs(highest) ? lowest : highest;
 }
 

@@ -1,5 +1,6 @@
 #include "haptics/safety.h"
 
+#include "core/repeatable.h"
 #include "core/translate.h"
 
 #include <algorithm>
@@ -142,7 +143,7 @@ double update_ending(const SafetySettings& settings, SafetyState& state, bool is
 // The clamp (N) that the heat of what was sent so far leaves.
 double update_heat(const SafetySettings& settings, SafetyState& state, double elapsed_s) noexcept {
     state.mean_square_newton2 += (state.sent_newton.squaredNorm() - state.mean_square_newton2) *
-                                 -std::expm1(-elapsed_s / settings.heat_s);
+                                 -repeatable::expm1(-elapsed_s / settings.heat_s);
     const double hot = settings.thermal_limit_newton * settings.thermal_limit_newton;
     const double lowest = std::min(settings.thermal_limit_newton, settings.clamp_newton);
     if (!state.is_thermally_limited && state.mean_square_newton2 >= hot) {

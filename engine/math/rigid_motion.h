@@ -24,7 +24,7 @@ struct RigidMotion {
 // Rotation by `angle` (rad), right-handed, about a unit axis through a point.
 inline RigidMotion turn_about(const Vec3& point, const Vec3& axis, double angle) noexcept {
     RigidMotion motion;
-    motion.rotation = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+    motion.rotation = turn_by(angle, axis).toRotationMatrix();
     motion.translation = point - motion.rotation * point;
     return motion;
 }

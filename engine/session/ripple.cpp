@@ -1,5 +1,7 @@
 #include "session/ripple.h"
 
+#include "core/repeatable.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -31,11 +33,11 @@ std::vector<double> moving_mean(const std::vector<double>& signal, std::size_t w
 
 // Power of one frequency, in cycles per sample, under a Hann window (Goertzel's recurrence).
 double power(std::span<const double> signal, double frequency) {
-    const double turn = 2 * std::cos(2 * std::numbers::pi * frequency);
+    const double turn = 2 * repeatable::cos(2 * std::numbers::pi * frequency);
     const double window = 2 * std::numbers::pi / static_cast<double>(signal.size());
     double older = 0, newer = 0;
     for (std::size_t i = 0; i < signal.size(); ++i) {
-        const double hann = 1 - std::cos(window * static_cast<double>(i));
+        const double hann = 1 - repeatable::cos(window * static_cast<double>(i));
         const double next = turn * newer - older + hann * signal[i];
         older = newer;
         newer = next;

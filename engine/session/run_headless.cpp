@@ -2,6 +2,7 @@
 
 #include "core/assertion.h"
 #include "core/load_error.h"
+#include "core/repeatable.h"
 #include "core/units.h"
 #include "haptics/hand.h"
 #include "haptics/plant.h"
@@ -392,14 +393,14 @@ private:
     static constexpr double width = 0.02;   // of a bin, of the logarithm
 
     std::size_t bin_of(double pN) const {
-        const double bin = std::log(std::max(pN, least) / least) / width;
+        const double bin = repeatable::log(std::max(pN, least) / least) / width;
         return std::min(counts_.size() - 1, static_cast<std::size_t>(bin));
     }
     double quantile_of(double share) const {
         double left = share * static_cast<double>(sum_.estimates);
         for (std::size_t bin = 0; bin < counts_.size(); ++bin) {
             left -= static_cast<double>(counts_[bin]);
-            if (left <= 0) return least * std::exp(width * static_cast<double>(bin));
+            if (left <= 0) return least * repeatable::exp(width * static_cast<double>(bin));
         }
         return 0;
     }

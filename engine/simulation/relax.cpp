@@ -25,10 +25,7 @@ struct RigidPose {
 // The variables of a step: place of the centre, and turn about it times `length`, both in Å.
 RigidPose moved(const RigidPose& pose, const Vec6& step, double length) {
     const Vec3 turn = step.tail<3>() / length;
-    const double angle = turn.norm();
-    if (angle == 0) return {pose.centre + step.head<3>(), pose.turn};
-    const Eigen::Quaterniond by(Eigen::AngleAxisd(angle, turn / angle));
-    return {pose.centre + step.head<3>(), (by * pose.turn).normalized()};
+    return {pose.centre + step.head<3>(), (turn_of(turn) * pose.turn).normalized()};
 }
 
 void place(const std::vector<Vec3>& shape, const RigidPose& pose, std::span<Vec3> positions) {
@@ -134,7 +131,7 @@ RelaxReport relax_rigid(std::span<Vec3> positions, const Vec3& centre, FieldPoin
     descent.place_here();
     report.energy_after = descent.value();
     report.displacement = (descent.pose().centre - centre).norm();
-    report.angle = Eigen::AngleAxisd(descent.pose().turn).angle();
+    report.angle = rotation_vector_of(descent.pose().turn).norm();
     report.force = descent.field().force.norm();
     report.torque = descent.field().torque_about(descent.pose().centre).norm();
     report.evaluations = descent.evaluations();

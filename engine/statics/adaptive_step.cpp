@@ -302,9 +302,8 @@ Vec6 base_move_of(const TorsionModel& model, const AdaptiveStatics& statics, std
     if (model.bases[molecule].freedom == BaseFreedom::Turning && pivot) {
         const Vec3& ground = passes.points[statics.clusters.tree.bases[molecule]];
         const Vec3 turn = move.head<3>(), arm = ground - *pivot;
-        const double angle = turn.norm();
         move.tail<3>().setZero();
-        if (angle > 0) move.tail<3>() = Eigen::AngleAxisd(angle, turn / angle) * arm - arm;
+        if (turn.norm() > 0) move.tail<3>() = turn_of(turn) * arm - arm;
     }
     return move;
 }
@@ -420,8 +419,7 @@ double find_work(const AdaptiveStatics& statics) {
         if (statics.is_moved[c] == 0) continue;
         const BodyState& from = statics.start.passes.bodies[c];
         const BodyState& to = statics.moving.passes.bodies[c];
-        const Eigen::AngleAxisd turn(statics.moving.motions[c].rotation);
-        const Vec3 turned = turn.angle() * turn.axis();
+        const Vec3 turned = rotation_vector_of(Quat(statics.moving.motions[c].rotation));
         const Vec3 shifted = statics.moving.centres[c] - statics.start.centres[c];
         work +=
             0.5 * ((from.torque + to.torque).dot(turned) + (from.force + to.force).dot(shifted));

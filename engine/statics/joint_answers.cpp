@@ -1,5 +1,7 @@
 #include "statics/joint_answers.h"
 
+#include "core/repeatable.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -49,7 +51,7 @@ std::vector<double> estimate_joint_errors(const TorsionModel& model,
         find_unrelaxed_turns(model, linear, statics.value.gradient.head(linear.mobile()));
     const std::vector<double>& growth = statics.joint_error_growth;
     for (std::size_t i = 0; i < errors.size(); ++i)
-        errors[i] = std::hypot(errors[i], i < growth.size() ? growth[i] * age * age : 0);
+        errors[i] = repeatable::hypot(errors[i], i < growth.size() ? growth[i] * age * age : 0);
     return errors;
 }
 

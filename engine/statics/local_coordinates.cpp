@@ -1,6 +1,7 @@
 #include "statics/local_coordinates.h"
 
 #include "core/assertion.h"
+#include "core/repeatable.h"
 
 #include <cmath>
 #include <utility>
@@ -71,8 +72,8 @@ Mat3 left_jacobian(const Vec3& rotation_vector) noexcept {
     double first = 0.5 - angle2 / 24, second = 1.0 / 6 - angle2 / 120;
     constexpr double small = 1e-3;  // rad, below which the next terms of the series are rounding
     if (angle > small) {
-        first = (1 - std::cos(angle)) / angle2;
-        second = (angle - std::sin(angle)) / (angle2 * angle);
+        first = (1 - repeatable::cos(angle)) / angle2;
+        second = (angle - repeatable::sin(angle)) / (angle2 * angle);
     }
     return Mat3::Identity() + first * cross + second * cross * cross;
 }

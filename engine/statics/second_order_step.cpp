@@ -1,5 +1,6 @@
 #include "statics/second_order_step.h"
 
+#include "core/repeatable.h"
 #include "statics/joint_answers.h"
 
 #include <algorithm>
@@ -14,11 +15,6 @@ namespace {
 HandPlace find_place(const TorsionModel& model, const TorsionState& state, const HandHold& hand) {
     if (hand.spring) return {state.springs[*hand.spring].place, Quat::Identity()};
     return {state.positions[model.bases[hand.molecule].pivot], state.turns[hand.molecule]};
-}
-
-Vec3 rotation_vector(const Quat& turn) {
-    const Eigen::AngleAxisd angle(turn);
-    return angle.angle() * angle.axis();
 }
 
 std::vector<HandPlace> find_places(const TorsionModel& model, const TorsionState& state,
@@ -36,7 +32,7 @@ Eigen::VectorXd find_hand_coordinates(std::span<const HandHold> hands,
     for (std::size_t i = 0; i < hands.size(); ++i) {
         const Vec3 way = to[i].place - from[i].place;
         if (hands[i].turns) {
-            const Vec3 turn = rotation_vector(to[i].turn * from[i].turn.conjugate());
+            const Vec3 turn = rotation_vector_of(to[i].turn * from[i].turn.conjugate());
             coordinates.insert(coordinates.end(), turn.begin(), turn.end());
         }
         coordinates.insert(coordinates.end(), way.begin(), way.end());
@@ -385,7 +381,8 @@ private:
 
     double error_estimate() const {
         const double age = find_relative_age(model_, settings_, state_, statics_);
-        return std::hypot(find_unrelaxed(hands(), statics_), statics_.error_growth * age * age);
+        return repeatable::hypot(find_unrelaxed(hands(), statics_),
+                                 statics_.error_growth * age * age);
     }
 
     void follow(double way) {

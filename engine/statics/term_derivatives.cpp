@@ -1,11 +1,11 @@
 #include "statics/term_derivatives.h"
 
+#include "core/repeatable.h"
 #include "forces/pair_hessian.h"
 #include "forces/term_hessians.h"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 
 namespace palpa {
@@ -239,7 +239,7 @@ double angle_of(const TermSum& sum, const Atoms4& atoms) {
     const Vec3 F = sum.place(a) - sum.place(b), G = sum.place(b) - sum.place(c),
                H = sum.place(d) - sum.place(c);
     const Vec3 A = F.cross(G);
-    return std::atan2(G.norm() * H.dot(A), A.dot(H.cross(G)));
+    return repeatable::atan2(G.norm() * H.dot(A), A.dot(H.cross(G)));
 }
 
 template <class Term>

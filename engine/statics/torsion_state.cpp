@@ -22,11 +22,7 @@ void rotate_base(std::size_t molecule, const Eigen::Quaterniond& rotation, const
 
 // Turns a base about its pivot (rad, along the axis of `turn`), then displaces it.
 void move_base(std::size_t molecule, const Vec3& turn, const Vec3& by, TorsionState& state) {
-    const double angle = turn.norm();
-    if (angle > 0) {
-        const Eigen::Quaterniond rotation(Eigen::AngleAxisd(angle, turn / angle));
-        rotate_base(molecule, rotation, state.pivots[molecule], state);
-    }
+    if (turn.norm() > 0) rotate_base(molecule, turn_of(turn), state.pivots[molecule], state);
     state.shifts[molecule] += by;
 }
 

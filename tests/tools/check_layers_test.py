@@ -51,6 +51,16 @@ class CheckLayers(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("engine/core/a.cpp:2: 'core' may not include 'haptics'", output)
 
+    def test_functions_that_round_otherwise_elsewhere_are_no_physics(self):
+        for line, code in (("double a = std::atan2(1, 2);", 1), ("Quat a = b.slerp(c, d);", 1),
+                           ("double a = std::sqrt(2);  // std::exp(1)", 0)):
+            with self.subTest(line=line):
+                (self.root / "engine" / "haptics" / "a.cpp").write_text('#include "haptics/a.h"\n' + line + "\n")
+                self.module("math", ["core"])
+                found, output = check(self.root)
+                self.assertEqual(found, code, output)
+                self.assertEqual("engine/haptics/a.cpp:2: " in output and "core/repeatable.h" in output, code == 1)
+
     def test_a_header_of_the_operating_system_is_of_platform_alone(self):
         for header in ("unistd.h", "sys/stat.h", "windows.h", "Windows.h"):
             for name, code in (("platform", 0), ("core", 1)):

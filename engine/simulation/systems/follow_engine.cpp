@@ -1,5 +1,6 @@
 #include "simulation/systems/follow_engine.h"
 
+#include "core/repeatable.h"
 #include "simulation/components.h"
 #include "simulation/held.h"
 #include "simulation/remote_engine.h"
@@ -7,7 +8,6 @@
 #include "simulation/systems/publish_contact.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -44,7 +44,8 @@ void follow_atoms(World& world, Entity hand, bool is_live) {
     } else {
         const double constant_s = 1e-3 * engine.settings.smoothing_ms;
         const double share =
-            constant_s > 0 ? 1 - std::exp(-world.resource<Clock>().period_s / constant_s) : 1;
+            constant_s > 0 ? 1 - repeatable::exp(-world.resource<Clock>().period_s / constant_s)
+                           : 1;
         hold.smoothed += share * (middle - hold.smoothed);
     }
 }

@@ -1,0 +1,19 @@
+// Elementary functions for all that decides where molecules and hands go. They are made of sums,
+// products, quotients and roots in double, which every processor, compiler and system rounds alike;
+// the last digits of the standard library's functions depend on all three. The error is at most
+// four units in the last place. Beyond a million radians sine, cosine and tangent are less exact.
+#pragma once
+
+namespace palpa::repeatable {
+
+double exp(double x) noexcept;
+double expm1(double x) noexcept;
+double log(double x) noexcept;
+double sin(double x) noexcept;
+double cos(double x) noexcept;
+double tan(double x) noexcept;
+double atan(double x) noexcept;
+double atan2(double y, double x) noexcept;
+double hypot(double x, double y) noexcept;
+
+}  // namespace palpa::repeatable
