@@ -1,6 +1,8 @@
 // The program: reads the command line, calls one command, turns errors into exit codes.
 #include "core/interrupt.h"
 #include "core/load_error.h"
+#include "core/text.h"
+#include "field/processor.h"
 #include "gpu/device.h"
 #include "simulation/remote_engine.h"
 #include "tools/commands/command.h"
@@ -15,6 +17,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -71,6 +74,19 @@ std::optional<int> parse(CLI::App& program, const std::vector<std::string>& argu
     }
 }
 
+// The environment may choose other kernels than the best for this processor.
+void choose_kernels() {
+    const char* const kind = std::getenv("PALPA_KERNELS");
+    if (!kind) return;
+    const std::vector<std::string> kinds = palpa::list_processor_kinds();
+    if (std::ranges::find(kinds, kind) == kinds.end()) {
+        throw palpa::LoadError({"PALPA_KERNELS"},
+                               fmt::format("'{}' is no kind of kernels here; expected {}",
+                                           palpa::printable(kind), fmt::join(kinds, ", ")));
+    }
+    palpa::use_processor_kind(kind);
+}
+
 int run_program(const std::vector<std::string>& arguments) {
     CLI::App program("Palpa: feel molecules", "palpa");
     program.formatter(palpa::build_help_formatter());
@@ -102,6 +118,7 @@ int main(int argc, char** argv) {
     const std::vector<std::string> arguments =
         palpa::move_structure_first(palpa::expand_help({argv + 1, argv + argc}));
     try {
+        choose_kernels();
         const int code = run_program(arguments);
         if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return code;
         fmt::print(stderr, "palpa: the output cannot be written\n");

@@ -14,6 +14,11 @@ std::vector<std::int64_t> list_targets() {
     return hwy::SupportedAndGeneratedTargets();
 }
 
+std::string& chosen_kind() {
+    static std::string kind;
+    return kind;
+}
+
 }  // namespace
 
 std::vector<std::string> list_processor_kinds() {
@@ -22,10 +27,15 @@ std::vector<std::string> list_processor_kinds() {
     return kinds;
 }
 
+std::string processor_kind() {
+    return chosen_kind().empty() ? list_processor_kinds().front() : chosen_kind();
+}
+
 void use_processor_kind(std::string_view kind) {
     for (const std::int64_t target : list_targets()) {
         if (hwy::TargetName(target) != kind) continue;
         hwy::GetChosenTarget().Update(target);
+        chosen_kind() = kind;
         return;
     }
     PALPA_ASSERT(false);

@@ -187,6 +187,9 @@ constexpr std::string_view by_commands_mark = "# A recorded Palpa session, which
 // A line of session.toml: the version of the recording follows.
 constexpr std::string_view version_mark = "# Recording format ";
 
+// In the line before it: the instruction set of the kernels follows, and a full stop.
+constexpr std::string_view kernels_mark = ", on a processor of kind ";
+
 // What the head of a session says about running it again.
 std::string describe_return(const SceneDescription& scene, RecordedBy by) {
     if (scene.engine) {
@@ -323,6 +326,14 @@ FileVersion read_recording_version(const fs::path& folder) {
                                     printable(stated.substr(0, 40)), to_string(recording_version)));
     }
     return unnumbered_version;
+}
+
+std::string read_recorded_kernels(const fs::path& folder) {
+    const std::string text = read_text_file(folder / "session.toml");
+    const std::size_t mark = text.rfind(kernels_mark);
+    if (mark == std::string::npos) return {};
+    const std::size_t begin = mark + kernels_mark.size();
+    return text.substr(begin, text.find('.', begin) - begin);
 }
 
 SceneDescription read_recorded_scene(const fs::path& folder) {
@@ -599,12 +610,11 @@ Recording::Recording(const fs::path& folder, const SceneDescription& scene, bool
     std::error_code error;
     fs::create_directory(folder / "inputs", error);
     if (error) throw LoadError({folder.string()}, "cannot be written: " + error.message());
-    write_text_file(
-        folder / "session.toml",
-        fmt::format("{}# Recorded by Palpa {}, {}, on a processor of kind {}.\n{}{}\n",
-                    format_session(scene, by), version_name, commit_name,
-                    list_processor_kinds().front(), version_mark, to_string(recording_version)),
-        is_there(folder / "session.toml") ? Existing::Replace : Existing::Refuse);
+    write_text_file(folder / "session.toml",
+                    fmt::format("{}# Recorded by Palpa {}, {}{}{}.\n{}{}\n",
+                                format_session(scene, by), version_name, commit_name, kernels_mark,
+                                processor_kind(), version_mark, to_string(recording_version)),
+                    is_there(folder / "session.toml") ? Existing::Replace : Existing::Refuse);
     for (std::size_t i = 0; i < files.size(); ++i) {
         write_text_file(folder / names.at(files[i]), contents[i]);
     }

@@ -70,6 +70,10 @@ bool has_journal(const std::filesystem::path& folder);
 // that of version 1.
 FileVersion read_recording_version(const std::filesystem::path& folder);
 
+// The instruction set of the kernels that computed a recording (field/processor.h), which its
+// session.toml states; empty where it does not.
+std::string read_recorded_kernels(const std::filesystem::path& folder);
+
 // The scene of a recording that can be played again. Throws LoadError where the folder holds none
 // or one of a newer major version, and where something that is not in it moved the atoms: a remote
 // engine, a trajectory, commands.

@@ -13,9 +13,10 @@ ROOT = Path(os.environ["PALPA_ROOT"])
 WATER = ROOT / "scenes" / "water"
 
 
-def palpa(*arguments):
+def palpa(*arguments, kernels=None):
+    chosen = {"PALPA_KERNELS": kernels} if kernels else {}
     return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
-                          stdin=subprocess.DEVNULL)
+                          stdin=subprocess.DEVNULL, env={**os.environ, **chosen})
 
 
 class Replay(unittest.TestCase):
@@ -25,12 +26,12 @@ class Replay(unittest.TestCase):
         self.folder = Path(temporary.name) / "recording"
         self.trace = self.folder / "trace.csv"
 
-    def record(self, *arguments):
-        result = palpa("run", "--headless", "--overwrite", "--record", self.folder, *arguments)
+    def record(self, *arguments, kernels=None):
+        result = palpa("run", "--headless", "--overwrite", "--record", self.folder, *arguments, kernels=kernels)
         self.assertEqual(result.returncode, 0, result.stderr)
 
-    def verify(self):
-        result = palpa("replay", self.folder, "--verify", "--json")
+    def verify(self, kernels=None):
+        result = palpa("replay", self.folder, "--verify", "--json", kernels=kernels)
         return result.returncode, json.loads(result.stdout)
 
     def test_a_recording_is_found_again_to_the_last_digit(self):
@@ -44,6 +45,18 @@ class Replay(unittest.TestCase):
                 self.assertEqual(code, 0)
                 self.assertEqual(report["different"], 0)
                 self.assertEqual(report["compared"], len(self.trace.read_text().splitlines()) - 1)
+
+    def test_a_recording_is_played_with_its_own_kernels_unless_others_are_chosen(self):
+        best = palpa("--version").stdout.partition("processor  ")[2].split()[0]
+        self.record("--seconds", "1", WATER, kernels="SCALAR")
+        self.assertIn("on a processor of kind SCALAR.\n", (self.folder / "session.toml").read_text())
+        self.assertIn("processor  SCALAR kernels", palpa("--version", kernels="SCALAR").stdout)
+        self.assertEqual(self.verify(), (0, self.verify("SCALAR")[1]))
+        self.assertEqual(self.verify(best)[0], 0 if best == "SCALAR" else 1)
+        unknown = palpa("run", WATER, "--headless", kernels="MMX")
+        self.assertEqual(unknown.returncode, 2)
+        self.assertIn("PALPA_KERNELS: 'MMX' is no kind of kernels here; expected ", unknown.stderr)
+        self.assertIn("SCALAR", unknown.stderr)
 
     def test_one_that_was_cut_off_is_readable_as_far_as_it_goes(self):
         self.record("--seconds", "1", WATER)

@@ -5,6 +5,7 @@
 #include "core/text.h"
 #include "devices/emulated_omni.h"
 #include "experiments/emulated_hand.h"
+#include "field/processor.h"
 #include "session/journal.h"
 #include "session/play_journal.h"
 #include "session/recording.h"
@@ -20,6 +21,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -72,6 +74,14 @@ void check_no_client_pulled(const std::filesystem::path& folder) {
                     "a window (its journal has the forces)");
 }
 
+// Computes with the kernels of the recording, where this processor has them and the environment
+// chooses no others.
+void use_recorded_kernels(const std::filesystem::path& folder) {
+    const std::vector<std::string> kinds = list_processor_kinds();
+    const auto kind = std::ranges::find(kinds, read_recorded_kernels(folder));
+    if (kind != kinds.end() && !std::getenv("PALPA_KERNELS")) use_processor_kind(*kind);
+}
+
 // How much of a session is there.
 struct RecordedTime {
     double recorded_s, session_s;
@@ -108,8 +118,8 @@ void print_check(const TraceCheck& check, const RecordedTime& time) {
             check.different(), first.row, printable(first.time_s), first.column,
             printable(first.recorded), first.played, check.largest_newton());
         fmt::print(
-            "  Identical results need the same program and the same kind of processor "
-            "(session.toml names them).\n");
+            "  Identical results need the same version and kernels, which session.toml names, and "
+            "but for SCALAR a processor of the same maker.\n");
     }
     if (check.is_cut_off()) {
         fmt::print("  cut off     {:.7g} of {:.7g} s were recorded\n", time.recorded_s,
@@ -168,6 +178,7 @@ int replay_journal(const ReplayOptions& options, const SceneDescription& scene) 
 int replay_command(const ReplayOptions& options) {
     SceneDescription scene = read_recorded_scene(options.recording);
     if (options.window) return open_screens({options.recording});
+    use_recorded_kernels(options.recording);
     if (has_journal(options.recording)) return replay_journal(options, scene);
     check_no_client_pulled(options.recording);
     if (!options.verify) {

@@ -42,8 +42,8 @@ std::string describe_version() {
         "compiler   {}\n"
         "processor  {} kernels, {}\n"
         "Vulkan     {}\n",
-        version_name, commit_name, list_file_versions(), name_compiler(),
-        list_processor_kinds().front(), machine_name(), name_vulkan_device());
+        version_name, commit_name, list_file_versions(), name_compiler(), processor_kind(),
+        machine_name(), name_vulkan_device());
 }
 
 }  // namespace palpa
