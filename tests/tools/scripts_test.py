@@ -23,7 +23,7 @@ class Scripts(unittest.TestCase):
                      "scripts/check_style", "scripts/package", "scripts/try_packages", "scripts/release",
                      "scripts/check_windows", "scripts/package_windows", "scripts/try_windows", "windows/build",
                      "windows/libraries", "scripts/make_manual", "scripts/check_skips",
-                     "scripts/compare_peers",
+                     "scripts/compare_peers", "scripts/fingerprints",
                      "scripts/compare_tl3", "scripts/csv_table", "scripts/docs_stats", "scripts/mutate",
                      "scripts/plot_adaptive", "scripts/run_table", "scripts/soak", "scripts/wake_up",
                      "scripts/plot_scenarios", "scripts/stroke_table", "scripts/update_results",
