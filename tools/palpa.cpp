@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
@@ -74,6 +75,13 @@ std::optional<int> parse(CLI::App& program, const std::vector<std::string>& argu
     }
 }
 
+// Eigen sums products of large matrices in blocks that fit the processor's caches. With caches of
+// one size the sums are the same on every processor.
+void fix_blocks() {
+    constexpr std::ptrdiff_t kibibyte = 1024;
+    Eigen::setCpuCacheSizes(32 * kibibyte, 512 * kibibyte, 4096 * kibibyte);
+}
+
 // The environment may choose other kernels than the best for this processor.
 void choose_kernels() {
     const char* const kind = std::getenv("PALPA_KERNELS");
@@ -118,6 +126,7 @@ int main(int argc, char** argv) {
     const std::vector<std::string> arguments =
         palpa::move_structure_first(palpa::expand_help({argv + 1, argv + argc}));
     try {
+        fix_blocks();
         choose_kernels();
         const int code = run_program(arguments);
         if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return code;

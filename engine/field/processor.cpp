@@ -9,9 +9,13 @@
 namespace palpa {
 namespace {
 
-std::vector<std::int64_t> list_targets() {
-    hwy::SetSupportedTargetsForTest(0);
-    return hwy::SupportedAndGeneratedTargets();
+// Asked once, for Highway then forgets which target was chosen.
+const std::vector<std::int64_t>& list_targets() {
+    static const std::vector<std::int64_t> targets = [] {
+        hwy::SetSupportedTargetsForTest(0);
+        return hwy::SupportedAndGeneratedTargets();
+    }();
+    return targets;
 }
 
 std::string& chosen_kind() {
