@@ -60,7 +60,7 @@ struct Played {
     double felt_newton = 0;  // at most, in any direction
     double moved_angstrom = 0;
     double median_us = 0, p99_us = 0;  // of a step, p99 without renewals
-    bool has_renewals = false;
+    double renewed = 0;                // share of the steps in which the model was renewed
 };
 
 Played play(const SceneDescription& scene, World& world, std::string_view stage,
@@ -84,10 +84,13 @@ Played play(const SceneDescription& scene, World& world, std::string_view stage,
     if (summary.unbinding) played.moved_angstrom = summary.unbinding->farthest;
     played.median_us = summary.step_median_us;
     played.p99_us = summary.step_p99_us;
-    played.has_renewals = summary.relaxation && summary.relaxation->renewals > 0;
+    if (summary.relaxation && summary.steps > 0) {
+        played.renewed =
+            static_cast<double>(summary.relaxation->renewals) / static_cast<double>(summary.steps);
+    }
     // Steps in which the model is renewed take a hundred times as long as others, and come late.
     constexpr double ordinary = 10;
-    if (played.has_renewals) played.p99_us = std::min(played.p99_us, ordinary * played.median_us);
+    if (played.renewed > 0) played.p99_us = std::min(played.p99_us, ordinary * played.median_us);
     return played;
 }
 
@@ -211,7 +214,7 @@ Played play_written(const std::filesystem::path& folder, std::string_view stage,
 void set_period(const Played& played, Tuning& tuning) {
     tuning.p99_us = played.p99_us;
     tuning.tuning.period_ms = choose_period_ms(played.p99_us);
-    tuning.measured = played.has_renewals ? "99 % of steps without a renewal" : "99 % of steps";
+    tuning.measured = played.renewed > 0 ? "99 % of steps without a renewal" : "99 % of steps";
     tuning.tuning.period_note = fmt::format(
         "1.5 times what {} took here, 5 ms at least: {:.2f} ms ({:.2f} ms in the "
         "median), {}.",
@@ -321,14 +324,16 @@ void rest_region(const std::filesystem::path& folder, const StageFunction& on_st
     bring_to_rest(folder, on_stage, tuning);
 }
 
-// With constant gains and a first period, then with those of the file.
-Played tune_coupling(const std::filesystem::path& folder, const StageFunction& on_stage,
-                     Tuning& tuning) {
-    tuning.tuning.feel_pN.reset();
-    tuning.tuning.coupling_note.clear();
-    tuning.tuning.period_note.clear();
+// With constant gains and a period that depends on the number of atoms alone.
+Played play_first(const std::filesystem::path& folder, const StageFunction& on_stage,
+                  Tuning& tuning) {
     tuning.tuning.period_ms = first_period_ms(tuning.rest.names.size());
-    const Played first = try_ways(folder, on_stage, tuning);
+    return try_ways(folder, on_stage, tuning);
+}
+
+// With the gains and the period that follow from the first play.
+Played tune_coupling(const Played& first, const std::filesystem::path& folder,
+                     const StageFunction& on_stage, Tuning& tuning) {
     set_coupling(first, tuning);
     set_period(first, tuning);
     const Played played = play_written(folder, for_translation("playing the scene"), {way_out_only},
@@ -349,13 +354,23 @@ void describe_hand(Tuning& tuning) {
                     tuning.copy.hand.words);
 }
 
+// Why no hand can move what it holds; empty where it can. The time of steps does not count: what is
+// in the hand is the same on every machine.
+std::string describe_firmness(const Played& played) {
+    constexpr double most_renewed = 0.1;  // the hand waits for every renewal
+    if (played.moved_angstrom < least_moved)
+        return fmt::format("moves by only {:.2f} Å", played.moved_angstrom);
+    if (played.renewed > most_renewed)
+        return fmt::format("needs a new model in {:.0f} % of the steps", 100 * played.renewed);
+    return {};
+}
+
 // In place of a chain that is bound too firmly.
-void hold_residue(const Played& chain, Tuning& tuning) {
+void hold_residue(const std::string& firmness, Tuning& tuning) {
     SystemCopy& copy = tuning.copy;
-    const std::string reason =
-        fmt::format("{} moves by only {:.2f} Å", copy.hand.words, chain.moved_angstrom);
+    const std::string chain = copy.hand.words;
     copy.hand = choose_residue(copy.structure, copy.segments);
-    copy.hand.reason = fmt::format("{}; {}", reason, copy.hand.reason);
+    copy.hand.reason = fmt::format("{} {}; {}", chain, firmness, copy.hand.reason);
     describe_hand(tuning);
 }
 
@@ -373,12 +388,14 @@ TunedScene tune(PreparedSystem& system, Tuning& tuning, const StageFunction& tel
         tuning.joints + base_freedom > static_cast<std::size_t>(most_second_order_coordinates)) {
         rest_region(folder, on_stage, tuning);
     }
-    Played played = tune_coupling(folder, on_stage, tuning);
-    if (tuning.may_hold_another && played.moved_angstrom < least_moved && holds_chain(tuning)) {
-        hold_residue(played, tuning);
+    Played first = play_first(folder, on_stage, tuning);
+    const std::string firmness = describe_firmness(first);
+    if (tuning.may_hold_another && holds_chain(tuning) && !firmness.empty()) {
+        hold_residue(firmness, tuning);
         if (tuning.tuning.region_angstrom) rest_region(folder, on_stage, tuning);
-        played = tune_coupling(folder, on_stage, tuning);
+        first = play_first(folder, on_stage, tuning);
     }
+    const Played played = tune_coupling(first, folder, on_stage, tuning);
     report_scene(played, tuning, system.report);
     return {tuning.files(), tuning.copy.hand.words, played.felt_newton, played.moved_angstrom};
 }

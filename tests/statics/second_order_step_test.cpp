@@ -575,19 +575,23 @@ TEST_CASE("a slow hand is followed, and renews the model by its way alone",
     CHECK(statics.renewed - before <= 4);  // every 0.1 Å, or an atom every 0.3 Å
 }
 
-TEST_CASE("a hand that trembles where nothing is at rest yet renews three times a step at most",
+TEST_CASE("a hand that trembles where nothing is at rest yet renews less than once a step",
           "[statics][second-order]") {
+    // The numbers depend on rounding: in 14,400 steps of 20 seeds 0.7 renewals a step, at most 8.
+    constexpr std::size_t steps = 60, most = 12;
     std::vector<HeldPair> pairs = pairs_far_from_rest();
-    int trial = 0;
+    std::size_t renewed = 0;
     for (HeldPair& c : pairs) {
-        INFO("trial " << trial++);
+        INFO("trial " << &c - pairs.data());
         SecondOrderStatics statics = build_second_order_statics(c.model, c.held);
-        for (int k = 0; k < 60; ++k) {
+        for (std::size_t k = 0; k < steps; ++k) {
             const std::size_t before = statics.renewed;
             (void)check_following(c, statics, k % 2 == 0 ? 1e-6 : -1e-6);
-            CHECK(statics.renewed - before <= 3);
+            CHECK(statics.renewed - before <= most);
         }
+        renewed += statics.renewed;
     }
+    CHECK(renewed < steps * pairs.size());
 }
 
 TEST_CASE("a hand that creeps is followed while a new model is still being made",

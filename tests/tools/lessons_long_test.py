@@ -10,7 +10,8 @@ class LongLessons(unittest.TestCase):
         for lesson in lessons():
             for device in DEVICES:
                 if lesson["name"] in LONG:
-                    check_that_the_operator_does_it(self, lesson, device)
+                    # On one of five ways by mouse the drug sits askew in the end, and stays so.
+                    check_that_the_operator_does_it(self, lesson, device, seeds=range(1, 6))
 
     def test_a_hand_that_knows_nothing_does_none(self):
         for name in LONG:
