@@ -150,6 +150,7 @@ private:
     // Remaining time of each warning.
     double shaking_for_s_ = 0, clamped_for_s_ = 0, late_for_s_ = 0, at_wall_for_s_ = 0,
            at_stop_for_s_ = 0;
+    double mean_step_ms_ = 0;  // over about the last second
 
     Lesson lesson_;
     std::vector<double> measured_;  // values of the lesson's steps in the last readout

@@ -476,6 +476,19 @@ TEST_CASE("at the wall the overlay says how to get off it", "[ui][overlay]") {
     CHECK(screen.vertices() > usual + 200);  // a line of some hundred letters, four corners each
 }
 
+TEST_CASE("late steps are told, a single one is not", "[ui][overlay]") {
+    Screen screen;
+    const auto vertices_after = [&](double step_ms, int frames) {
+        screen.readout.step_ms = step_ms;
+        for (int i = 0; i < frames; ++i) screen.frame();
+        return screen.vertices();
+    };
+    const int usual = vertices_after(0.1, 3);
+    CHECK(vertices_after(5, 1) < usual + 100);  // the reading has more digits
+    CHECK(vertices_after(0.1, 60) < usual + 100);
+    CHECK(vertices_after(5, 60) > usual + 200);
+}
+
 TEST_CASE("why an edit was refused is written over the picture", "[ui][overlay]") {
     Screen screen;
     const int usual = (screen.frame(), screen.frame(), screen.vertices());
