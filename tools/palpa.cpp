@@ -85,7 +85,7 @@ void fix_blocks() {
 // The environment may choose other kernels than the best for this processor.
 void choose_kernels() {
     const char* const kind = std::getenv("PALPA_KERNELS");
-    if (!kind) return;
+    if (!kind || !*kind) return;
     const std::vector<std::string> kinds = palpa::list_processor_kinds();
     if (std::ranges::find(kinds, kind) == kinds.end()) {
         throw palpa::LoadError({"PALPA_KERNELS"},

@@ -180,7 +180,7 @@ std::string ReplaySession::describe_verdict() const {
     if (const auto& first = check_->first()) {
         return fmt::format(
             "{} of {} rows differ from what was recorded, the first at {} s ({}: {}, now {}). The "
-            "same bits come from the same program on the same kind of processor.",
+            "same version and kernels, which session.toml names, give the same digits.",
             check_->different(), check_->compared(), first->time_s, first->column, first->recorded,
             first->played);
     }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi, pi_rest = 1.2246467991473532e-16;
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// Products of the first with whole numbers of up to a million are exact.
+// The products of the first ones with whole numbers of up to a million are exact.
 constexpr double ln2_high = 0x1.62e42feep-1, ln2_low = 0x1.a39ef35793c76p-33;
 constexpr double half_pi_high = 0x1.921fb544p+0, half_pi_low = 0x1.0b4611a626331p-34;
 
@@ -26,7 +26,7 @@ double whole(double x) noexcept {
     return (x + shift) - shift;
 }
 
-// x 2^n.
+// Returns x 2^n.
 double scaled(double x, int n) noexcept {
     if (n < -1000 || n > 1000) return std::ldexp(x, n);
     return x * std::bit_cast<double>(static_cast<std::uint64_t>(1023 + n) << 52U);
@@ -102,7 +102,7 @@ double log(double x) noexcept {
         m *= 2;
         --n;
     }
-    // Of m = (1 + s)/(1 - s).
+    // The series in s, where m = (1 + s)/(1 - s).
     const double f = m - 1, s = f / (2 + f), z = s * s, square = f * f / 2;
     const double sum = s * (square + z * polynomial(c, z)) + n * ln2_low;
     return n * ln2_high - ((square - sum) - f);

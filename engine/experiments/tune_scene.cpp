@@ -324,14 +324,14 @@ void rest_region(const std::filesystem::path& folder, const StageFunction& on_st
     bring_to_rest(folder, on_stage, tuning);
 }
 
-// With constant gains and a period that depends on the number of atoms alone.
+// Plays with constant gains and a period that depends on the number of atoms alone.
 Played play_first(const std::filesystem::path& folder, const StageFunction& on_stage,
                   Tuning& tuning) {
     tuning.tuning.period_ms = first_period_ms(tuning.rest.names.size());
     return try_ways(folder, on_stage, tuning);
 }
 
-// With the gains and the period that follow from the first play.
+// Plays with the gains and the period that follow from the first play.
 Played tune_coupling(const Played& first, const std::filesystem::path& folder,
                      const StageFunction& on_stage, Tuning& tuning) {
     set_coupling(first, tuning);
@@ -354,8 +354,8 @@ void describe_hand(Tuning& tuning) {
                     tuning.copy.hand.words);
 }
 
-// Why no hand can move what it holds; empty where it can. The time of steps does not count: what is
-// in the hand is the same on every machine.
+// Says why no hand can move what it holds; empty where one can. The time of steps does not count,
+// so that a scene has the same in the hand on every machine.
 std::string describe_firmness(const Played& played) {
     constexpr double most_renewed = 0.1;  // the hand waits for every renewal
     if (played.moved_angstrom < least_moved)

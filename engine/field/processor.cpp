@@ -9,7 +9,7 @@
 namespace palpa {
 namespace {
 
-// Asked once, for Highway then forgets which target was chosen.
+// Asks once: Highway then forgets which target was chosen.
 const std::vector<std::int64_t>& list_targets() {
     static const std::vector<std::int64_t> targets = [] {
         hwy::SetSupportedTargetsForTest(0);

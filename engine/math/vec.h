@@ -42,7 +42,7 @@ inline Vec3 rotation_vector_of(const Quat& turn) noexcept {
     return turn.vec() * ((turn.w() < 0 ? -angle : angle) / sine);
 }
 
-// What is turned `share` of the shortest way from one rotation to another.
+// The rotation after a `share` of the shortest way from one rotation to another.
 inline Quat turn_between(const Quat& from, const Quat& to, double share) noexcept {
     return turn_of(share * rotation_vector_of(to * from.conjugate())) * from;
 }

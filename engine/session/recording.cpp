@@ -187,7 +187,7 @@ constexpr std::string_view by_commands_mark = "# A recorded Palpa session, which
 // A line of session.toml: the version of the recording follows.
 constexpr std::string_view version_mark = "# Recording format ";
 
-// In the line before it: the instruction set of the kernels follows, and a full stop.
+// A part of the line before it: the instruction set of the kernels follows, and a full stop.
 constexpr std::string_view kernels_mark = ", on a processor of kind ";
 
 // What the head of a session says about running it again.
@@ -216,9 +216,9 @@ std::string describe_return(const SceneDescription& scene, RecordedBy by) {
                 session_mark);
         default:
             return fmt::format(
-                "{}, every field written out. To run it again:\n#   palpa run session.toml "
-                "--headless --record NEW_FOLDER\n",
-                session_mark);
+                "{}, every field written out. To run it again, to the last digit:\n"
+                "#   PALPA_KERNELS={} palpa run session.toml --headless --record NEW_FOLDER\n",
+                session_mark, processor_kind());
     }
 }
 

@@ -399,9 +399,10 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
             "clipping: the force is limited to {} N; push less or lower the force gain",
             settings_.coupling.clamp_N);
     });
-    // A single late step is no reason to raise the period.
-    mean_step_ms_ += std::min(1.0, static_cast<double>(ImGui::GetIO().DeltaTime)) *
-                     (readout.step_ms - mean_step_ms_);
+    // A single late step, of any length, is no reason to raise the period.
+    const double step_ms = std::min(readout.step_ms, 10 * settings_.period_ms);
+    mean_step_ms_ +=
+        std::min(1.0, static_cast<double>(ImGui::GetIO().DeltaTime)) * (step_ms - mean_step_ms_);
     warn(late_for_s_, mean_step_ms_ > settings_.period_ms, [&] {
         return format_translated(
             "steps take longer than the period of {} ms, so the force is delayed; raise the period",

@@ -38,8 +38,8 @@ class Fingerprints(unittest.TestCase):
                          ["the same to the last digit"] * 5)
 
     def test_one_other_last_digit_is_told_with_its_place(self):
-        for row, column, told in ((1234, "stiffness_N_per_m", "rows of water.csv are the same, others are not"),
-                                  (10000, "device_force_x_N", "between 9501 and 10000 of 10000")):
+        for row, column, told in ((1234, "stiffness_N_per_m", "rows of water.csv are the same, other rows or columns are not"),
+                                  (10000, "device_force_x_N", "rows 9501 to 10000 of 10000")):
             with self.subTest(row=row), tempfile.TemporaryDirectory() as folder:
                 script = Path(folder) / "tampering.py"
                 script.write_text(TAMPERING.format(program=PROGRAM, row=row, column=column))

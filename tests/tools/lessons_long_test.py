@@ -10,8 +10,8 @@ class LongLessons(unittest.TestCase):
         for lesson in lessons():
             for device in DEVICES:
                 if lesson["name"] in LONG:
-                    # On one of five ways by mouse the drug sits askew in the end, and stays so.
-                    check_that_the_operator_does_it(self, lesson, device, seeds=range(1, 6))
+                    # On two of five ways by mouse the drug sits askew in the end, and stays so.
+                    check_that_the_operator_does_it(self, lesson, device, range(1, 6) if device == "mouse" else (1,))
 
     def test_a_hand_that_knows_nothing_does_none(self):
         for name in LONG:

@@ -78,8 +78,16 @@ void check_no_client_pulled(const std::filesystem::path& folder) {
 // chooses no others.
 void use_recorded_kernels(const std::filesystem::path& folder) {
     const std::vector<std::string> kinds = list_processor_kinds();
-    const auto kind = std::ranges::find(kinds, read_recorded_kernels(folder));
-    if (kind != kinds.end() && !std::getenv("PALPA_KERNELS")) use_processor_kind(*kind);
+    const std::string recorded = read_recorded_kernels(folder);
+    if (std::getenv("PALPA_KERNELS")) return;
+    if (std::ranges::find(kinds, recorded) != kinds.end()) {
+        use_processor_kind(recorded);
+    } else if (!recorded.empty()) {
+        fmt::print(stderr,
+                   "note: recorded with the kernels {}, which this processor does not have; played "
+                   "with {}\n",
+                   printable(recorded), processor_kind());
+    }
 }
 
 // How much of a session is there.
@@ -177,8 +185,8 @@ int replay_journal(const ReplayOptions& options, const SceneDescription& scene) 
 
 int replay_command(const ReplayOptions& options) {
     SceneDescription scene = read_recorded_scene(options.recording);
-    if (options.window) return open_screens({options.recording});
     use_recorded_kernels(options.recording);
+    if (options.window) return open_screens({options.recording});
     if (has_journal(options.recording)) return replay_journal(options, scene);
     check_no_client_pulled(options.recording);
     if (!options.verify) {
