@@ -2,6 +2,7 @@
 // steps, saturating motors, stops at the ends of the workspace, buttons. The hand follows a script,
 // a person's mouse or an emulated operator. Turning the handle meets no resistance.
 #pragma once
+#include "core/omni.h"
 #include "devices/ordered_time.h"
 #include "devices/scripted_hand.h"
 #include "haptics/device.h"
@@ -26,11 +27,11 @@ enum class HandDriver { Script, Mouse, Operator };
 // Defaults from the maker's data sheet of the Omni. Inertia, friction and encoder step are not
 // verified on a device.
 struct EmulatedOmniSettings {
-    DeviceDynamics dynamics;           // 45 g; the viscosity is assumed
-    double friction_newton = 0.26;     // Coulomb friction when the handle is moved
-    double encoder_step_m = 0.055e-3;  // 0: exact positions
-    double peak_force_newton = 3.3;    // saturation of the motors
-    std::optional<HandModel> hand;     // unset: nobody holds the handle
+    DeviceDynamics dynamics;                      // 45 g; the viscosity is assumed
+    double friction_newton = 0.26;                // Coulomb friction when the handle is moved
+    double encoder_step_m = 0.055e-3;             // 0: exact positions
+    double peak_force_newton = omni_peak_newton;  // saturation of the motors
+    std::optional<HandModel> hand;                // unset: nobody holds the handle
     HandScript script;
     HandOrders* orders = nullptr;  // targets from a window or an operator
     HandDriver driver = HandDriver::Script;

@@ -12,6 +12,7 @@
 // A mouse has no end: the workspace is not bounded. While the clutch is pressed (the window's Space
 // is released), the handle returns to the middle.
 #pragma once
+#include "core/omni.h"
 #include "devices/ordered_time.h"
 #include "haptics/device.h"
 #include "haptics/hand.h"
@@ -25,9 +26,10 @@ namespace palpa {
 struct MouseHandleSettings {
     double stiffness_N_per_m = 200;  // K
     double damping_N_s_per_m = 4;    // B
-    double peak_force_newton = 3.3;  // as for the emulated Omni, so that scenes feel alike
-    int delay_ticks = 1;             // of the servo's forces
-    HandOrders* orders = nullptr;    // targets from the window; null: p stays in the middle
+    double peak_force_newton =
+        omni_peak_newton;          // as for the emulated Omni, so that scenes feel alike
+    int delay_ticks = 1;           // of the servo's forces
+    HandOrders* orders = nullptr;  // targets from the window; null: p stays in the middle
 };
 
 // Spring and damper of a hand with this grip; without a grip those of the medium one.

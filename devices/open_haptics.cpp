@@ -1,5 +1,6 @@
 #include "devices/open_haptics.h"
 
+#include "core/omni.h"
 #include "devices/device_nodes.h"
 #include "devices/maker_library.h"
 #include "platform/library.h"
@@ -23,8 +24,8 @@ constexpr unsigned short priority = 0x7FFF;
 // While the stylus has to go into its inkwell, the library is asked so often whether it is there.
 constexpr int inkwell_ticks = 250;
 
-// What the maker's data sheet says of the Omni, where the library says nothing.
-constexpr double omni_peak_newton = 3.3, omni_continuous_newton = 0.88;
+// From the maker's data sheet of the Omni, used where the library says nothing.
+constexpr double omni_continuous_newton = 0.88;
 
 // USB ids that were seen on the Touch: serial, as its papers say it, HID. The one of Ethernet
 // and the oldest ones do not show.

@@ -125,7 +125,7 @@ PerceptualForceLaw PerceptualForceLaw::for_range(double F_lo, double F_hi) noexc
          .F_h_lo =
              most_felt * repeatable::exp(power * repeatable::log(joint_at / F_hi)) * (1 + rounding),
          .F_h_hi = most_felt,
-         .F_h_limit = 3});
+         .F_h_limit = truncation_newton});
 }
 
 double PerceptualForceLaw::value(double F_m) const noexcept {

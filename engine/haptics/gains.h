@@ -1,5 +1,6 @@
 // The coupling laws: molecular force to hand force, handle travel to molecule travel. SI units.
 #pragma once
+#include "core/omni.h"
 #include "math/vec.h"
 
 #include <optional>
@@ -13,11 +14,11 @@ namespace palpa {
 class PrintedForceLaw {
 public:
     struct Parameters {
-        double F_h1 = 1.0;       // N, limit for weak forces
-        double F_h2 = 3.0;       // N, limit for strong forces; > F_h1
-        double F_0 = 1.5e-9;     // N, between weak and strong molecular forces
-        double A_fmin = 0.64e9;  // gain of strong forces
-        double A_fmax = 5.1e9;   // gain of weak forces
+        double F_h1 = 1.0;                // N, limit for weak forces
+        double F_h2 = truncation_newton;  // N, limit for strong forces; > F_h1
+        double F_0 = 1.5e-9;              // N, between weak and strong molecular forces
+        double A_fmin = 0.64e9;           // gain of strong forces
+        double A_fmax = 5.1e9;            // gain of weak forces
     };
 
     explicit PrintedForceLaw(const Parameters& parameters) noexcept;
@@ -62,18 +63,18 @@ public:
     // on eq. 2 hardly goes above 3 nN. Between, the attraction of two waters (0.32 nN) feels
     // like 1.1 N.
     struct Parameters {
-        double F_lo = 20e-12;    // N
-        double F_hi = 3e-9;      // N, > 2 F_lo
-        double F_h_lo = 0.3;     // N
-        double F_h_hi = 3.0;     // N, usual force limit of a device
-        double F_h_limit = 3.3;  // N, > F_h_hi, peak force of the device
+        double F_lo = 20e-12;                 // N
+        double F_hi = 3e-9;                   // N, > 2 F_lo
+        double F_h_lo = 0.3;                  // N
+        double F_h_hi = truncation_newton;    // N
+        double F_h_limit = omni_peak_newton;  // N, > F_h_hi
     };
 
     explicit PerceptualForceLaw(const Parameters& parameters) noexcept;
 
     // For forces that must be felt, 0 < F_lo < F_hi (N): at F_lo `least_felt` or more, at F_hi
-    // `most_felt`, above that less than 3 N. Its joint is wholly below F_lo. Where F_hi is less
-    // than 9 F_lo it would take a power above 1, so the law is linear there.
+    // `most_felt`, above that less than `truncation_newton`. Its joint is wholly below F_lo. Where
+    // F_hi is less than 9 F_lo it would take a power above 1, so the law is linear there.
     static PerceptualForceLaw for_range(double F_lo, double F_hi) noexcept;
     static constexpr double least_felt = 0.3, most_felt = 2.7;  // N
 

@@ -40,8 +40,13 @@ SampledPlant sample_plant(const Plant& plant, double period_s);
 // The largest spring K (N/m) felt at the handle that the paper's loop keeps stable: position
 // sampled every `period_s`, force -K x sent one period and `delay_s` later and held (z^-1 and
 // hold). K = A_f k_e / A_d. Found as the first K for which an eigenvalue of the sampled loop leaves
-// the unit circle; infinity if none below 1e7 N/m does. Eq. 1 of the paper, K < M/period^2, is not
-// this.
+// the unit circle; infinity if none below 1e7 N/m does.
 double critical_stiffness(const Plant& plant, double period_s, double delay_s = 0);
+
+// Eq. 1 of the paper, A_f k_e / A_d < M_h / T_s^2, as a bound of K (N/m). It knows neither damping
+// nor hand, and allows loops that vibrate (critical_stiffness).
+inline double stiffness_of_equation_1(const DeviceDynamics& device, double period_s) noexcept {
+    return device.inertia_kg / (period_s * period_s);
+}
 
 }  // namespace palpa

@@ -1,6 +1,7 @@
 // The safety chain, the last stage before the device: fault checks, fades, clamp, slew limit. SI
 // units.
 #pragma once
+#include "core/omni.h"
 #include "haptics/device.h"
 #include "math/vec.h"
 
@@ -18,8 +19,8 @@ inline constexpr std::size_t slow_window_ticks = 250;
 
 // Times count from the event to the tick that sends zero.
 struct SafetySettings {
-    double clamp_newton =
-        3;  // limit of the norm of the force; a lower limit is reached at the slew rate
+    // Limit of the norm of the force; a lower one is reached at the slew rate.
+    double clamp_newton = truncation_newton;
     // False: only the clamp and the check for non-finite values act, as in the paper's loop; no
     // other setting, disengage() or end of the program has an effect.
     bool is_full = true;

@@ -426,7 +426,6 @@ void check_coupling(const CouplingDescription& c, Problems& problems) {
           fmt::format("'coupling.F_hi_nN' is {} nN; expected more than twice F_lo_pN, {} pN",
                       c.F_hi_nN, c.F_lo_pN));
     if (const auto range = c.feel_pN) {
-        constexpr double most_felt_newton = 3;
         const auto [weakest, strongest] = *range;
         check(strongest > weakest, "coupling.feel_pN",
               fmt::format("'coupling.feel_pN' is [{}, {}]; expected the weaker force first",
@@ -435,10 +434,10 @@ void check_coupling(const CouplingDescription& c, Problems& problems) {
               fmt::format("'coupling.feel_pN' applies to guarded coupling, but coupling.mode is "
                           "{}; expected mode = \"guarded\", or no feel_pN",
                           coupling_mode_names[static_cast<std::size_t>(c.mode)]));
-        check(c.clamp_N >= most_felt_newton, "coupling.clamp_N",
+        check(c.clamp_N >= truncation_newton, "coupling.clamp_N",
               fmt::format("'coupling.clamp_N' is {} N, but with feel_pN forces reach {} N; "
                           "expected that or more",
-                          c.clamp_N, most_felt_newton));
+                          c.clamp_N, truncation_newton));
     }
 }
 

@@ -1,3 +1,4 @@
+#include "core/omni.h"
 #include "scene/fields.h"
 
 namespace palpa {
@@ -13,7 +14,7 @@ void visit_coupling_keys(FieldVisitor& v, CouplingDescription& c) {
     v.real({.key = "clamp_N",
             .meaning = "largest force sent to the device",
             .lowest = 0,
-            .highest = 3.3},
+            .highest = omni_peak_newton},
            c.clamp_N);
     v.real({.key = "F_h1_N",
             .meaning = "eq. 2: limit of the part of the curve for weak forces",

@@ -1,6 +1,7 @@
 // The content of a scene file as plain data with defaults; nothing is loaded yet.
 #pragma once
 #include "core/load_error.h"
+#include "core/omni.h"
 #include "core/units.h"
 #include "scene/choices.h"
 #include "scene/edits.h"
@@ -144,9 +145,10 @@ struct DeviceDescription {
 
 struct CouplingDescription {
     CouplingMode mode = CouplingMode::Guarded;
-    double clamp_N = 3;
-    double F_h1_N = 1, F_h2_N = 3, F_0_nN = 1.5, A_f_min = 0.64e9, A_f_max = 5.1e9;  // eq. 2
-    double gamma_per_N = 10e11, F_off_pN = 20, A_d_min = 0.005e9, A_d_max = 0.25e9;  // eq. 3
+    double clamp_N = truncation_newton;
+    // Eq. 2 and eq. 3, with the numbers of the paper's figures 4 and 6.
+    double F_h1_N = 1, F_h2_N = truncation_newton, F_0_nN = 1.5, A_f_min = 0.64e9, A_f_max = 5.1e9;
+    double gamma_per_N = 10e11, F_off_pN = 20, A_d_min = 0.005e9, A_d_max = 0.25e9;
     double A_f = 0.64e9, A_d = 0.25e9;  // constant gains
 
     // What must be felt, of the force on the molecule, and how exactly; unset: what the laws and

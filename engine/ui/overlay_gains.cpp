@@ -1,4 +1,5 @@
 // The panel at the right: the laws of the coupling, and what happened.
+#include "core/omni.h"
 #include "core/translate.h"
 #include "haptics/gains.h"
 #include "session/run_headless.h"
@@ -51,8 +52,7 @@ const char* shown_law(const Names& names, Choice choice) {
     return translated(names[static_cast<std::size_t>(choice)].data());
 }
 
-constexpr double touch_ratio = 50;        // of the strongest to the weakest
-constexpr double least_clamp_newton = 3;  // that a range needs
+constexpr double touch_ratio = 50;  // of the strongest to the weakest
 
 // Pixels between the axes, at the usual size of text.
 constexpr float least_plot = 70, largest_plot = 240;
@@ -198,7 +198,7 @@ void Overlay::draw_gain_sliders() {
               for_translation("A_fmin of eq. 2: gain of strong forces, N/N"));
         slide("F_h1", c.F_h1_N, 0.1, 2.9, "%.2f N", false,
               for_translation("F_h1 of eq. 2, N: limit of the part of the curve for weak forces"));
-        slide("F_h2", c.F_h2_N, 0.2, 3.3, "%.2f N", false,
+        slide("F_h2", c.F_h2_N, 0.2, omni_peak_newton, "%.2f N", false,
               for_translation(
                   "F_h2 of eq. 2, N: limit for the strongest forces; must be above F_h1"));
         slide("F_0", c.F_0_nN, 0.0, 10, "%.2f nN", false,
@@ -228,7 +228,7 @@ void Overlay::draw_gain_sliders() {
 // The range that is felt, for who knows no gains.
 void Overlay::choose_touch() {
     CouplingDescription& c = settings_.coupling;
-    if (c.clamp_N < least_clamp_newton) return;
+    if (c.clamp_N < truncation_newton) return;
     const auto set = [&](const std::optional<std::array<double, 2>>& range) {
         undo_.push_back(settings_);
         redo_.clear();
@@ -299,7 +299,7 @@ void Overlay::choose_range() {
     CouplingDescription& c = settings_.coupling;
     const LiveSettings before = settings_;
     bool has_range = c.feel_pN.has_value();
-    if (c.clamp_N >= least_clamp_newton &&
+    if (c.clamp_N >= truncation_newton &&
         ImGui::Checkbox(labelled("feel a range").c_str(), &has_range)) {
         undo_.push_back(before);
         redo_.clear();

@@ -147,5 +147,33 @@ class Pages(unittest.TestCase):
         return ran
 
 
+class Paper(unittest.TestCase):
+    """engine/paper.md: what it names is there."""
+
+    def test_names_are_in_the_files_that_it_links(self):
+        page = ROOT / "engine/paper.md"
+        names = 0
+        for line in page.read_text().splitlines():
+            for part in re.split(r"(?=\[[^\]]+\]\()", line):
+                link = re.match(r"\[[^\]]+\]\(([^)#]+)[^)]*\)(.*)", part)
+                if not link:
+                    continue
+                file = page.parent / link[1]
+                self.assertTrue(file.is_file(), f"{page}: there is no {link[1]}")
+                if file.suffix != ".h":
+                    continue
+                for name in re.findall(r"`(\w+)`", link[2].partition("|")[0].partition("; key")[0]):
+                    names += 1
+                    self.assertTrue(re.search(rf"\b{name}\b", file.read_text()), f"{page}: {link[1]} has no {name}")
+        self.assertGreater(names, 25)
+
+    def test_every_key_is_a_key_of_scenes(self):
+        keys = (ROOT / "scenes/keys.md").read_text()
+        named = re.findall(r"`([a-z]+\.\w+)`", (ROOT / "engine/paper.md").read_text())
+        self.assertGreater(len(named), 10)
+        for key in named:
+            self.assertIn(f"| `{key}` |", keys)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -33,11 +33,10 @@ ReportSection report_stability(const ReportOptions& options) {
     const double k_e =
         force_along_line_at(world, equilibrium_distance(world).value_or(0)).stiffness *
         units::newton_per_metre_per_kcal_per_mol_angstrom2;
-    const double M_h = DeviceDynamics{}.inertia_kg;
     std::vector<std::vector<double>> curves, points;
     for (int i = 0; i <= 60; ++i) {
         const double period_s = 1e-3 * std::pow(100.0, i / 60.0);
-        std::vector<double> row{1e3 * period_s, M_h / (period_s * period_s) / k_e,
+        std::vector<double> row{1e3 * period_s, stiffness_of_equation_1({}, period_s) / k_e,
                                 damping_of(HandGrip::Medium) / (1.5 * period_s) / k_e};
         for (const HandGrip grip : grips)
             row.push_back(critical_stiffness(build_plant({}, hand_model(grip)), period_s) / k_e);
@@ -61,7 +60,8 @@ ReportSection report_stability(const ReportOptions& options) {
             farthest = std::max(farthest, std::abs(onset / K - 1));
             points.push_back({static_cast<double>(period_ms), onset / k_e});
             table.push_back({std::string(grip_names[static_cast<std::size_t>(grip)]),
-                             fmt::format("{} ms", period_ms), fmt::format("{:.4g}", M_h / (T * T)),
+                             fmt::format("{} ms", period_ms),
+                             fmt::format("{:.4g}", stiffness_of_equation_1({}, T)),
                              fmt::format("{:.4g}", damping_of(grip) / (1.5 * T)),
                              fmt::format("{:.4g}", K), fmt::format("{:.4g}", onset),
                              fmt::format("{:+.1f} %", 100 * (onset / K - 1))});
