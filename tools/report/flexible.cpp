@@ -71,11 +71,13 @@ set ytics nomirror
 set y2tics
 unset key
 set xlabel 'time (s)'
+set yrange [-12:12]
 set ylabel 'force on the molecule F_m (nN)' tc rgb '#c0392b'
 set y2label 'force on the hand F_h (N)' tc rgb '#1f5fa8'
 set y2range [-3:3]
 plot $pull using 1:2 with lines lc rgb '#c0392b', \
      $pull using 1:3 axes x1y2 with lines lc rgb '#1f5fa8'
+set autoscale y
 set autoscale y2
 set y2range [0:*]
 set ylabel 'position (Å)' tc rgb '#555555'
@@ -102,7 +104,7 @@ ReportSection report_figure_9(const ReportOptions& options) {
     ReportSection section{"figure-9", "Figure 9: extraction and reinsertion of an HIV inhibitor"};
     section.shows =
         "Haptic and molecular force along the tunnel, and position of the inhibitor with A_d, over "
-        "time, while it is led out and back.";
+        "time, while it is led out and back; forces beyond 12 nN are cut off.";
     section.command = fmt::format("palpa run {} --headless", options.flexible.string());
     if (std::filesystem::exists(paper)) {
         report_progress("in the paper's terms");
