@@ -1,12 +1,11 @@
 // The program: reads the command line, calls one command, turns errors into exit codes.
 #include "core/interrupt.h"
 #include "core/load_error.h"
-#include "core/text.h"
-#include "field/processor.h"
 #include "gpu/device.h"
 #include "simulation/remote_engine.h"
 #include "tools/commands/command.h"
 #include "tools/commands/command_line.h"
+#include "tools/commands/kernels.h"
 #include "tools/commands/run.h"
 #include "tools/commands/start.h"
 #include "tools/commands/version.h"
@@ -14,11 +13,9 @@
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
-#include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -75,26 +72,6 @@ std::optional<int> parse(CLI::App& program, const std::vector<std::string>& argu
     }
 }
 
-// Eigen sums products of large matrices in blocks that fit the processor's caches. With caches of
-// one size the sums are the same on every processor.
-void fix_blocks() {
-    constexpr std::ptrdiff_t kibibyte = 1024;
-    Eigen::setCpuCacheSizes(32 * kibibyte, 512 * kibibyte, 4096 * kibibyte);
-}
-
-// The environment may choose other kernels than the best for this processor.
-void choose_kernels() {
-    const char* const kind = std::getenv("PALPA_KERNELS");
-    if (!kind || !*kind) return;
-    const std::vector<std::string> kinds = palpa::list_processor_kinds();
-    if (std::ranges::find(kinds, kind) == kinds.end()) {
-        throw palpa::LoadError({"PALPA_KERNELS"},
-                               fmt::format("'{}' is no kind of kernels here; expected {}",
-                                           palpa::printable(kind), fmt::join(kinds, ", ")));
-    }
-    palpa::use_processor_kind(kind);
-}
-
 int run_program(const std::vector<std::string>& arguments) {
     CLI::App program("Palpa: feel molecules", "palpa");
     program.formatter(palpa::build_help_formatter());
@@ -126,8 +103,7 @@ int main(int argc, char** argv) {
     const std::vector<std::string> arguments =
         palpa::move_structure_first(palpa::expand_help({argv + 1, argv + argc}));
     try {
-        fix_blocks();
-        choose_kernels();
+        palpa::choose_kernels();
         const int code = run_program(arguments);
         if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return code;
         fmt::print(stderr, "palpa: the output cannot be written\n");

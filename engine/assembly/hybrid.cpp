@@ -123,8 +123,7 @@ void move_clusters(const HybridTree& hybrid, std::span<const double> joint_turns
             const std::uint32_t molecule = hybrid.tree.molecule_of[c];
             const Vec6& move = base_moves[molecule];
             const Vec3 turn = move.head<3>(), &ground = passes.points[c];
-            motion.rotation.setIdentity();
-            if (turn.norm() > 0) motion.rotation = turn_of(turn).toRotationMatrix();
+            motion.rotation = turn_of(turn).toRotationMatrix();
             motion.translation = ground - motion.rotation * ground + move.tail<3>();
             std::optional<Vec3>& guided = passes.guides[molecule].point;
             if (guided) guided = motion.rotation * *guided + motion.translation;

@@ -302,8 +302,7 @@ Vec6 base_move_of(const TorsionModel& model, const AdaptiveStatics& statics, std
     if (model.bases[molecule].freedom == BaseFreedom::Turning && pivot) {
         const Vec3& ground = passes.points[statics.clusters.tree.bases[molecule]];
         const Vec3 turn = move.head<3>(), arm = ground - *pivot;
-        move.tail<3>().setZero();
-        if (turn.norm() > 0) move.tail<3>() = turn_of(turn) * arm - arm;
+        move.tail<3>() = turn_of(turn) * arm - arm;
     }
     return move;
 }

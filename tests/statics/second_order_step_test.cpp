@@ -577,10 +577,10 @@ TEST_CASE("a slow hand is followed, and renews the model by its way alone",
 
 TEST_CASE("a hand that trembles where nothing is at rest yet renews less than once a step",
           "[statics][second-order]") {
-    // The numbers depend on rounding: in 14,400 steps of 20 seeds 0.7 renewals a step, at most 8.
-    constexpr std::size_t steps = 60, most = 12;
+    // Where rounding leads is chance in a few steps; in all others three are enough.
+    constexpr std::size_t steps = 60, usual = 3, most = 12;
     std::vector<HeldPair> pairs = pairs_far_from_rest();
-    std::size_t renewed = 0;
+    std::size_t renewed = 0, unusual = 0;
     for (HeldPair& c : pairs) {
         INFO("trial " << &c - pairs.data());
         SecondOrderStatics statics = build_second_order_statics(c.model, c.held);
@@ -588,10 +588,12 @@ TEST_CASE("a hand that trembles where nothing is at rest yet renews less than on
             const std::size_t before = statics.renewed;
             (void)check_following(c, statics, k % 2 == 0 ? 1e-6 : -1e-6);
             CHECK(statics.renewed - before <= most);
+            unusual += statics.renewed - before > usual ? 1 : 0;
         }
         renewed += statics.renewed;
     }
     CHECK(renewed < steps * pairs.size());
+    CHECK(100 * unusual <= steps * pairs.size());
 }
 
 TEST_CASE("a hand that creeps is followed while a new model is still being made",

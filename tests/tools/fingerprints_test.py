@@ -37,7 +37,7 @@ class Fingerprints(unittest.TestCase):
         self.assertEqual([line.split(maxsplit=1)[1] for line in result.stdout.splitlines()],
                          ["the same to the last digit"] * 5)
 
-    def test_one_other_last_digit_is_told_with_its_place(self):
+    def test_a_changed_last_digit_is_reported_with_its_row(self):
         for row, column, told in ((1234, "stiffness_N_per_m", "rows of water.csv are the same, other rows or columns are not"),
                                   (10000, "device_force_x_N", "rows 9501 to 10000 of 10000")):
             with self.subTest(row=row), tempfile.TemporaryDirectory() as folder:
@@ -47,7 +47,7 @@ class Fingerprints(unittest.TestCase):
                 self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
                 self.assertIn(told, result.stdout)
 
-    def test_what_cannot_be_compared_is_refused(self):
+    def test_unknown_names_and_failed_programs_are_refused(self):
         for arguments, told in ((["fire"], "'fire' is none of the recordings; expected water, "),
                                 (["--remake", "--kernels", "AVX2"], "expected one of both")):
             result = fingerprints(*arguments)

@@ -476,7 +476,8 @@ TEST_CASE("at the wall the overlay says how to get off it", "[ui][overlay]") {
     CHECK(screen.vertices() > usual + 200);  // a line of some hundred letters, four corners each
 }
 
-TEST_CASE("late steps are told, a single one is not", "[ui][overlay]") {
+TEST_CASE("a warning appears while steps are late, and not after a single late step",
+          "[ui][overlay]") {
     Screen screen;
     const auto vertices_after = [&](double step_ms, int frames) {
         screen.readout.step_ms = step_ms;

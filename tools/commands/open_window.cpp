@@ -17,6 +17,7 @@
 #include "scene/read_scene.h"
 #include "session/recording.h"
 #include "simulation/load.h"
+#include "tools/commands/kernels.h"
 #include "tools/commands/print_run.h"
 #include "tools/commands/screens.h"
 #include "view/first_view.h"
@@ -263,6 +264,7 @@ std::optional<NextScreen> show_recording(WindowShell& shell, PreferencesFile& pr
                         "has no journal, so it was recorded without a window; 'palpa replay FOLDER "
                         "--verify' plays it");
     }
+    const RecordedKernels kernels(folder);
     RecordedDevice first({.name = "recorded session"}), second({.name = "recorded session"});
     if (preferences.can_keep()) remember_scene(folder / journal_name, preferences);
     ViewSettings view;

@@ -5,7 +5,6 @@
 #include "core/text.h"
 #include "devices/emulated_omni.h"
 #include "experiments/emulated_hand.h"
-#include "field/processor.h"
 #include "session/journal.h"
 #include "session/play_journal.h"
 #include "session/recording.h"
@@ -14,6 +13,7 @@
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "tools/commands/command.h"
+#include "tools/commands/kernels.h"
 #include "tools/commands/progress.h"
 #include "tools/commands/run.h"
 #include "tools/commands/screens.h"
@@ -21,7 +21,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cstddef>
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -72,22 +71,6 @@ void check_no_client_pulled(const std::filesystem::path& folder) {
                     "cannot be replayed: clients pulled in this run (--serve) and the recording "
                     "does not have their forces; expected a run without pulling clients, or one of "
                     "a window (its journal has the forces)");
-}
-
-// Computes with the kernels of the recording, where this processor has them and the environment
-// chooses no others.
-void use_recorded_kernels(const std::filesystem::path& folder) {
-    const std::vector<std::string> kinds = list_processor_kinds();
-    const std::string recorded = read_recorded_kernels(folder);
-    if (std::getenv("PALPA_KERNELS")) return;
-    if (std::ranges::find(kinds, recorded) != kinds.end()) {
-        use_processor_kind(recorded);
-    } else if (!recorded.empty()) {
-        fmt::print(stderr,
-                   "note: recorded with the kernels {}, which this processor does not have; played "
-                   "with {}\n",
-                   printable(recorded), processor_kind());
-    }
 }
 
 // How much of a session is there.
@@ -185,8 +168,8 @@ int replay_journal(const ReplayOptions& options, const SceneDescription& scene) 
 
 int replay_command(const ReplayOptions& options) {
     SceneDescription scene = read_recorded_scene(options.recording);
-    use_recorded_kernels(options.recording);
     if (options.window) return open_screens({options.recording});
+    const RecordedKernels kernels(options.recording);
     if (has_journal(options.recording)) return replay_journal(options, scene);
     check_no_client_pulled(options.recording);
     if (!options.verify) {
