@@ -136,7 +136,7 @@ def check_file(root, path, folders, modules):
         owner = top[0] if top[0] in ("tests",) else None
     problems = []
     sources = [file for kind in SOURCES for file in modules[owner][kind]] if owner in modules else []
-    if owner in modules and owner not in ("tools", "tests") and path.suffix == ".cpp":
+    if owner in modules and owner not in ("tools", "lab", "tests") and path.suffix == ".cpp":
         if path.relative_to(modules[owner]["folder"]).as_posix() not in sources:
             problems.append(f"{path.relative_to(root)}: not among the SOURCES of '{owner}'")
     allowed = reachable(modules, owner) if owner in modules else None
@@ -154,7 +154,7 @@ def check_file(root, path, folders, modules):
         is_of_system = owner in ("platform", "tests", None) or path.parent == root / "tools" / "windows"
         if SYSTEM.match(match.group(2).lower()) and not is_of_system:
             problems.append(f"{place}: <{match.group(2)}> is the operating system's; only 'platform' calls it")
-        target = match.group(2).split("/")[0]
+        target = "lab" if match.group(2).startswith("tools/lab/") else match.group(2).split("/")[0]
         if match.group(1) == "<" and ("/" not in match.group(2) or target not in modules):
             continue  # a library's
         if "/" not in match.group(2):

@@ -141,7 +141,7 @@ std::string format_scene(const Structure& structure, std::span<const SystemSegme
                          const HandChoice& hand, const Vec3& way, const SceneText& text,
                          const SceneTuning& tuning) {
     std::string scene = fmt::format(
-        "# Written by palpa prepare. Every key: palpa run --keys.\nformat = \"{}\"\ntitle = "
+        "# Written by palpa prepare. Every key: palpa help keys.\nformat = \"{}\"\ntitle = "
         "{}\nabout "
         "= {}\nmade_by = {}\n\n[force_field]\nfiles = [\"system.prm\"]\n",
         to_string(scene_version), in_quotes(text.title), in_quotes(text.about),

@@ -1,7 +1,7 @@
 // Any text is a file of poses or a LoadError; one that is reads the same once written.
-#include "experiments/rest_poses.h"
 #include "tests/fuzz/expect.h"
 #include "tests/fuzz/or_refused.h"
+#include "tools/lab/experiments/rest_poses.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -292,13 +292,3 @@ TEST_CASE("the list of fields names each key once, with its default and range", 
     CHECK(keys.count("hand.path") == 1);
     CHECK(keys.count("run.seed") == 1);
 }
-
-TEST_CASE("every field of a scene is documented", "[scene][fields]") {
-    const std::string readme = read_text_file(test::in_project("scenes/keys.md"));
-
-    for (const FieldNote& field : list_fields()) {
-        INFO("scenes/keys.md lacks `" << field.key << "`");
-        CHECK(readme.find(fmt::format("| `{}` | {} |", field.key, field.type)) !=
-              std::string::npos);
-    }
-}

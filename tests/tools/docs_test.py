@@ -12,6 +12,7 @@ import unittest
 
 ROOT = pathlib.Path(os.environ["PALPA_ROOT"])
 PROGRAM = os.environ["PALPA_PROGRAM"]
+LAB = os.environ["PALPA_LAB"]
 PAGES = [page for page in sorted(ROOT.glob("**/*.md"))
          if page.relative_to(ROOT).parts[0] not in ("build", "recordings")]
 # Inputs of these are made by a script from an entry of the PDB.
@@ -19,15 +20,15 @@ NOT_MADE = ("scenes/groel",)
 
 
 @functools.lru_cache(maxsize=None)
-def help_of(command):
-    return subprocess.run([PROGRAM, command, "--help"], capture_output=True, text=True,
+def help_of(program, command):
+    return subprocess.run([program, command, "--help"], capture_output=True, text=True,
                           check=False).stdout
 
 
 @functools.lru_cache(maxsize=None)
-def commands():
-    listed = subprocess.run([PROGRAM, "--help"], capture_output=True, text=True, check=True).stdout
-    return set(re.findall(r"^  ([a-z-]+)(?:  |$)", listed, re.M)) | {"help"}
+def commands(program):
+    listed = subprocess.run([program, "--help"], capture_output=True, text=True, check=True).stdout
+    return set(re.findall(r"^    ([a-z-]+) +[A-Z]", listed, re.M)) | {"help"}
 
 
 def fenced(text):
@@ -41,17 +42,18 @@ def inline(text):
 
 
 def palpa_arguments(line):
-    """Those of `palpa ...` or `tools/run ...`; nothing for any other line."""
+    """The program, and the arguments of `palpa ...`, `palpa-lab ...` or `tools/run ...`; nothing for another line."""
     line = re.sub(r"^(\w+=\S+ )+", "", " ".join(line.split()))
-    started = re.match(r"(?:build/release/bin/)?palpa (.*)|tools/run ?(.*)", line)
+    started = re.match(r"(?:build/release/bin/)?palpa(-lab)? (.*)|tools/run ?(.*)", line)
     if not started:
         return None
-    if started[1] is not None:
-        return split(started[1])
-    rest = split(started[2])
+    if started[2] is not None:
+        arguments = split(started[2])
+        return [LAB if started[1] else PROGRAM, *arguments] if arguments else None
+    rest = split(started[3])
     if rest and "--headless" in rest and "--record" not in rest:  # as the script does
         rest += ["--record", "recordings/" + pathlib.Path(rest[0]).name, "--overwrite"]
-    return ["run", *rest]
+    return [PROGRAM, "run", *rest]
 
 
 def split(text):
@@ -66,7 +68,7 @@ def is_runnable(line, arguments):
     """Takes seconds, and needs neither a window nor a device nor what stands for something else."""
     if "# long" in line or any(scene in line for scene in NOT_MADE) or re.search(r"\[--|[A-Z]{4,}|\.\.\.", line):
         return False
-    return arguments[:1] == ["render"] or "--headless" in arguments or "--check" in arguments
+    return arguments[1] == "render" or "--headless" in arguments or "--check" in arguments
 
 
 def anchors(text):
@@ -102,14 +104,14 @@ class Pages(unittest.TestCase):
     def test_options_are_the_programs(self):
         seen = 0
         for page, line, arguments in self.each_command():
-            command = arguments[0]
+            program, command, *arguments = arguments
             if not re.fullmatch(r"[a-z-]+", command) or command.startswith("-"):
                 continue
             with self.subTest(page=str(page), line=line):
                 is_scene = (ROOT / "scenes" / command).is_dir()
-                self.assertTrue(command in commands() or is_scene, command)
-                known = set(re.findall(r"--[a-z][a-z-]*", help_of(command)))
-                for argument in arguments[1:]:
+                self.assertTrue(command in commands(program) or is_scene, command)
+                known = set(re.findall(r"--[a-z][a-z-]*", help_of(program, command)))
+                for argument in arguments:
                     option = re.match(r"\[?(--[a-z][a-z-]*)", argument)
                     if option and not is_scene:
                         self.assertIn(option[1], known | {"--help"})
@@ -118,7 +120,7 @@ class Pages(unittest.TestCase):
 
     def test_scenes_are_there(self):
         for page, line, arguments in self.each_command():
-            for argument in arguments:
+            for argument in arguments[1:]:
                 if re.match(r"scenes/[\w/.-]+$", argument) and not argument.endswith(
                         (".png", ".crd", ".psf", ".csv")):
                     with self.subTest(page=str(page), line=line):
@@ -141,7 +143,7 @@ class Pages(unittest.TestCase):
                 continue
             ran += 1
             with self.subTest(page=str(page.relative_to(ROOT)), line=line):
-                result = subprocess.run([PROGRAM, *arguments], cwd=folder, check=False,
+                result = subprocess.run(arguments, cwd=folder, check=False,
                                         capture_output=True, text=True, timeout=300)
                 self.assertEqual(result.returncode, 0, result.stderr[-500:])
         return ran
@@ -168,11 +170,11 @@ class Paper(unittest.TestCase):
         self.assertGreater(names, 25)
 
     def test_every_key_is_a_key_of_scenes(self):
-        keys = (ROOT / "scenes/keys.md").read_text()
+        keys = subprocess.run([PROGRAM, "help", "keys"], capture_output=True, text=True, check=True).stdout.splitlines()
         named = re.findall(r"`([a-z]+\.\w+)`", (ROOT / "engine/paper.md").read_text())
         self.assertGreater(len(named), 10)
         for key in named:
-            self.assertIn(f"| `{key}` |", keys)
+            self.assertIn(key, keys)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import unittest
 from pathlib import Path
 
 PROGRAM = os.environ["PALPA_PROGRAM"]
+LAB = os.environ["PALPA_LAB"]
 ROOT = Path(os.environ["PALPA_ROOT"])
 BUILT_IN = ROOT / "engine" / "charmm" / "charmm36.ff"
 REFERENCES = ROOT / "tests" / "data" / "force_field"
@@ -26,7 +27,8 @@ class ForceField(unittest.TestCase):
         self.folder = Path(folder.name)
 
     def palpa(self, *arguments, code=0):
-        result = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder)
+        program = LAB if arguments[0] == "force-field" else PROGRAM
+        result = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, cwd=self.folder)
         self.assertEqual(result.returncode, code, result.stderr)
         return result
 

@@ -123,8 +123,7 @@ class HostileFiles(unittest.TestCase):
 
     def test_a_file_that_is_too_large_is_refused(self):
         large = self.sparse("large.crd")
-        for arguments in (["bench", "--load", large],
-                          ["energy", large, "--toppar", WATER / "tip3p.str"],
+        for arguments in (["energy", large, "--toppar", WATER / "tip3p.str"],
                           ["energy", WATER / "dimer.crd", "--toppar", large],
                           ["run", WATER, "--headless", "--device", f"script:{large}"],
                           ["run", WATER, "--headless", "--device", f"replay:{large}"]):
@@ -192,8 +191,9 @@ class HostileFiles(unittest.TestCase):
         for name, arguments in (
                 ("a.str", ["energy", WATER / "dimer.crd", "--toppar", "a.str"]),
                 ("a.csv", ["run", WATER, "--headless", "--device", "script:a.csv"]),
-                ("a.crd", ["bench", "--load", "a.crd"]), ("a.psf", ["bench", "--load", "a.psf"]),
-                ("a.pdb", ["bench", "--load", "a.pdb"]), ("a.cif", ["bench", "--load", "a.cif"])):
+                ("a.crd", ["energy", "a.crd", "--toppar", WATER / "tip3p.str"]),
+                ("a.psf", ["energy", "a.psf", "--coordinates", WATER / "dimer.crd", "--toppar", WATER / "tip3p.str"]),
+                ("a.pdb", ["prepare", "a.pdb", "-o", "out"]), ("a.cif", ["prepare", "a.cif", "-o", "out"])):
             with self.subTest(name=name):
                 (self.tmp / name).write_text(secret + "\n")
                 result = self.palpa(*arguments)

@@ -55,7 +55,7 @@ class Outputs(unittest.TestCase):
         for command in (("run", scene, "--headless", "--seconds", "0.1", "--record", out / "recording"),
                         ("run", "--check", scene), ("replay", out / "recording", "--verify"),
                         ("select", scene, "all"), ("export", scene, "-o", out / "water.pdb"),
-                        ("licences",), ("devices",), ("scene", "view.colour")):
+                        ("licences",), ("devices",), ("help", "view.colour")):
             with self.subTest(command=command[0]):
                 before = {path for path in self.files() if path.parts[0] != "out"}
                 result = subprocess.run([PROGRAM, *map(str, command)], capture_output=True, text=True, cwd=here,
@@ -117,13 +117,6 @@ class Outputs(unittest.TestCase):
         for overwrite in ((), ("--overwrite",)):
             self.palpa(*render, *overwrite, code=2)
         self.assertEqual(image.read_bytes(), before)
-
-    def test_a_report_is_replaced_on_demand_only(self):
-        page = self.tmp / "page.html"
-        page.write_text("mine")
-        self.assert_refused("report", "--scene", WATER, "--hiv", WATER / "space.toml", "-o", page,
-                            told="")
-        self.assertEqual(page.read_text(), "mine")
 
     def test_prepared_files_of_others_are_not_replaced(self):
         folder = self.tmp / "out"
@@ -238,18 +231,6 @@ class Outputs(unittest.TestCase):
         result = self.palpa("run", WATER, "--headless", "--record", self.folder, "--set",
                             "molecules.moved.segment=NONE", code=2)
         self.assertIn("already contains a recording", result.stderr)
-
-    # ---- studies
-
-    def test_no_file_of_a_study_is_replaced(self):
-        for name in ("trials.csv", "summary.json", "line.csv"):
-            with self.subTest(name=name):
-                folder = self.tmp / name
-                folder.mkdir()
-                (folder / name).write_text("mine")
-                self.assert_refused("study", WATER, "--operators", "1", "--rounds", "1", "--modes",
-                                    "4", "-o", folder, told="already exists, so the folder contains a study")
-                self.assertEqual((folder / name).read_text(), "mine")
 
 
 if __name__ == "__main__":

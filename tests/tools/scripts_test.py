@@ -18,16 +18,16 @@ def run(*command, **options):
 
 class Scripts(unittest.TestCase):
     def test_every_tool_explains_itself(self):
-        for name in ("build", "run", "test", "scripts/plot_stroke", "scripts/play_ways_out",
+        for name in ("build", "run", "test", "scripts/plot_stroke", "lab/scripts/play_ways_out",
                      "scripts/prepare_entries", "scripts/make_secondary_structure_references",
                      "scripts/check_style", "scripts/package", "scripts/try_packages", "scripts/release",
                      "scripts/check_windows", "scripts/package_windows", "scripts/try_windows", "windows/build",
                      "windows/libraries", "scripts/make_manual", "scripts/check_skips",
-                     "scripts/compare_peers", "scripts/fingerprints",
-                     "scripts/compare_tl3", "scripts/csv_table", "scripts/docs_stats", "scripts/mutate",
-                     "scripts/plot_adaptive", "scripts/run_table", "scripts/soak", "scripts/wake_up",
-                     "scripts/plot_scenarios", "scripts/stroke_table", "scripts/update_results",
-                     "scripts/plot_study", "scripts/update_translations"):
+                     "lab/scripts/compare_peers", "scripts/fingerprints",
+                     "lab/scripts/compare_tl3", "lab/scripts/csv_table", "scripts/docs_stats", "scripts/mutate",
+                     "lab/scripts/plot_adaptive", "lab/scripts/run_table", "lab/scripts/soak", "lab/scripts/wake_up",
+                     "lab/scripts/plot_scenarios", "lab/scripts/stroke_table", "scripts/update_results",
+                     "lab/scripts/plot_study", "scripts/update_translations"):
             with self.subTest(tool=name):
                 result = run(ROOT / "tools" / name, "--help")
                 self.assertEqual(result.returncode, 0)
@@ -44,10 +44,6 @@ class Scripts(unittest.TestCase):
             self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
             self.assertEqual(struct.unpack(">II", data[16:24]), (1200, 480))
             self.assertEqual(run(ROOT / "tools" / "scripts" / "plot_stroke", folder, image).returncode, 2)
-
-    def test_scenes_page_has_the_list_of_keys_as_the_program_prints_it(self):
-        keys = run(PROGRAM, "run", "--keys").stdout
-        self.assertIn(keys.strip(), (ROOT / "scenes" / "keys.md").read_text())
 
     def test_pages_link_to_what_is_there(self):
         for readme in ROOT.glob("**/*.md"):

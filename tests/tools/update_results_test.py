@@ -10,6 +10,7 @@ import unittest
 
 ROOT = pathlib.Path(os.environ["PALPA_ROOT"])
 SCRIPTS = ROOT / "tools" / "scripts"
+LAB_SCRIPTS = ROOT / "tools" / "lab" / "scripts"
 
 PAGE = """# A page
 
@@ -145,7 +146,7 @@ class Strokes(unittest.TestCase):
 
 class Tables(unittest.TestCase):
     def table(self, *options):
-        return subprocess.run([SCRIPTS / "csv_table", *options], capture_output=True, text=True, check=False)
+        return subprocess.run([LAB_SCRIPTS / "csv_table", *options], capture_output=True, text=True, check=False)
 
     def test_medians_and_ranges_of_groups(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -18,7 +18,7 @@ void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
     command
         .add_option_function<std::string>(
             "--set", [&settings](const std::string& value) { settings.push_back(value); },
-            "set a key of the scene file, by its full name or its last part ('palpa run --keys' "
+            "set a key of the scene file, by its full name or its last part ('palpa help keys' "
             "lists all)")
         ->type_name("KEY=VALUE")
         ->trigger_on_parse()

@@ -23,24 +23,15 @@ void add_lessons(CLI::App& program, ProgramCommand& chosen);
 void add_connect(CLI::App& program, ProgramCommand& chosen);
 void add_devices(CLI::App& program, ProgramCommand& chosen);
 void add_prepare(CLI::App& program, ProgramCommand& chosen);
-void add_force_field(CLI::App& program, ProgramCommand& chosen);
 void add_relax(CLI::App& program, ProgramCommand& chosen);
-void add_scene(CLI::App& program, ProgramCommand& chosen);
 void add_render(CLI::App& program, ProgramCommand& chosen);
 void add_export(CLI::App& program, ProgramCommand& chosen);
 void add_select(CLI::App& program, ProgramCommand& chosen);
 void add_energy(CLI::App& program, ProgramCommand& chosen);
 void add_licences(CLI::App& program, ProgramCommand& chosen);
 void add_engine(CLI::App& program, ProgramCommand& chosen);
-void add_bench(CLI::App& program, ProgramCommand& chosen);
-void add_report(CLI::App& program, ProgramCommand& chosen);
 void add_study(CLI::App& program, ProgramCommand& chosen);
 void add_replay(CLI::App& program, ProgramCommand& chosen);
-void add_scenarios(CLI::App& program, ProgramCommand& chosen);
-void add_closed_paths(CLI::App& program, ProgramCommand& chosen);
-void add_accuracy(CLI::App& program, ProgramCommand& chosen);
-void add_compare_ligands(CLI::App& program, ProgramCommand& chosen);
-void add_unbind(CLI::App& program, ProgramCommand& chosen);
 
 // What the options of a command are read into; `function` gets it once the command was asked for.
 template <class Options, class Function>

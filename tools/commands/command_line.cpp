@@ -14,8 +14,7 @@
 namespace palpa {
 namespace {
 
-constexpr std::size_t page_width = 100, name_width = 26;
-constexpr std::string_view example_indent = "  palpa ";
+constexpr std::size_t page_width = 100, name_width = 30;
 
 struct SettingOption {
     std::string_view option, key, value;
@@ -31,163 +30,98 @@ constexpr std::array setting_options = std::to_array<SettingOption>({
     {"--every", "run.every", "N"},
 });
 
-// What commands were called before.
-struct RenamedCommand {
+// Commands that went elsewhere.
+struct MovedCommand {
     std::string_view before, now;
 };
-constexpr std::array renamed_commands = std::to_array<RenamedCommand>(
-    {{"feel", "accuracy"}, {"loops", "closed-paths"}, {"journey", "unbind"}});
+constexpr std::array moved_commands = std::to_array<MovedCommand>({
+    {"accuracy", "palpa-lab accuracy"},
+    {"bench", "palpa-lab bench"},
+    {"closed-paths", "palpa-lab closed-paths"},
+    {"compare-ligands", "palpa-lab compare-ligands"},
+    {"force-field", "palpa-lab force-field"},
+    {"report", "palpa-lab report"},
+    {"scenarios", "palpa-lab scenarios"},
+    {"unbind", "palpa-lab unbind"},
+    {"scene", "palpa help"},
+});
 
-constexpr const char* exit_codes =
-    "Exit codes\n  0      done\n  1      a check failed (report, replay --verify, devices, ...), "
-    "no film could be made\n         (render --film), or a command was refused (run --commands)\n  "
-    "2      wrong arguments or input, or something is missing; nothing was changed\n  3      an "
-    "internal error of Palpa\n  4      no remote engine answered, or its connection was lost "
-    "(connect, run)\n  128+N  ended by signal N; a recording is complete up to that moment\n";
-
-// Words of `text` in lines from `column` on; the first line continues one of `used` letters.
-std::string wrap(std::string_view text, std::size_t used, std::size_t column) {
+// In lines of a page, behind the names.
+std::string wrap(std::string_view text) {
     std::string page;
-    std::size_t at = used;
-    const auto begin_line = [&] {
-        page += '\n';
-        page.append(column, ' ');
-        at = column;
-    };
-    if (at + 1 < column) {
-        page.append(column - at, ' ');
-        at = column;
-    } else {
-        begin_line();
-    }
+    std::size_t at = name_width;
     for (const std::string_view word : split_words(text)) {
-        if (at > column && at + 1 + word.size() > page_width) begin_line();
-        if (at > column) {
-            page += ' ';
-            ++at;
+        if (at > name_width) {
+            const bool fits = at + 1 + word.size() <= page_width;
+            page += fits ? ' ' : '\n';
+            at = fits ? at + 1 : name_width;
         }
         page += word;
         at += word.size();
     }
-    return page + "\n";
+    return page;
 }
 
-std::string entry(const std::string& name, const std::string& text) {
-    const std::string start = "  " + name;
-    return start + wrap(text, start.size(), name_width);
-}
-
-// The library's names of types, as people write them; ranges are said with the description.
-std::string value_name(const CLI::Option& option) {
-    if (option.get_type_size() == 0) return {};
-    const std::string type = option.get_type_name();
-    const std::string base = type.substr(0, type.find(':'));
-    const bool is_number = base == "FLOAT" || base == "INT" || base == "UINT";
-    const std::string name = is_number ? "N" : base == "TEXT" ? "NAME" : base;
-    return option.get_expected_max() > 1 ? name + " ..." : name;
-}
-
-std::string describe_option(const CLI::Option& option) {
-    std::vector<std::string> notes;
-    const std::string type = option.get_type_name();
-    // The library's own lists of what is allowed are said in the description.
-    const std::size_t colon = type.find(':');
-    if (colon != std::string::npos && type[colon + 1] != '{') {
-        notes.push_back(type.substr(colon + 1));
-    }
-    for (const CLI::Option* const other : option.get_needs()) {
-        if (!other->get_positional()) notes.push_back("with " + other->get_name());
-    }
-    if (option.get_required() && !option.get_positional()) notes.emplace_back("required");
-    const std::string& text = option.get_description();
-    return notes.empty() ? text : fmt::format("{} ({})", text, fmt::join(notes, "; "));
-}
-
-std::string upper_name(const CLI::Option& positional) {
-    const std::string name = upper_case(positional.get_name(true, false));
-    return positional.get_expected_max() > 1 ? name + " ..." : name;
-}
-
-std::string option_names(const CLI::Option& option) {
-    std::string names;
-    for (const std::string& name : option.get_snames()) names += "-" + name + ", ";
-    for (const std::string& name : option.get_lnames()) names += "--" + name + ", ";
-    if (names.size() > 2) names.resize(names.size() - 2);
-    const std::string value = value_name(option);
-    return value.empty() ? names : names + " " + value;
-}
-
+// CLI11's own page, with values as people write them and lines that fit.
 class HelpFormatter : public CLI::Formatter {
 public:
-    std::string make_help(const CLI::App* app, std::string name,
-                          CLI::AppFormatMode mode) const override {
-        (void)name, (void)mode;
-        return app->get_parent() ? help_of_command(*app) : help_of_program(*app);
+    explicit HelpFormatter(std::string usage) : usage_(std::move(usage)) {
+        column_width(name_width);
+        label("OPTIONS", "OPTION ...");
+        label("Positionals", "Arguments");
+    }
+
+    std::string make_usage(const CLI::App* app, std::string name) const override {
+        if (!app->get_parent()) return "\n" + usage_;
+        return CLI::Formatter::make_usage(app, app->get_parent()->get_name() + " " + name);
+    }
+
+    // Of a program all commands, in their order.
+    std::string make_subcommands(const CLI::App* app, CLI::AppFormatMode) const override {
+        std::string lines;
+        for (const CLI::App* const command : app->get_subcommands({})) {
+            lines +=
+                fmt::format("    {:<15} {}\n", command->get_name(), command->get_description());
+        }
+        return lines;
+    }
+
+    std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
+        const std::string name = CLI::Formatter::make_option_name(option, is_positional);
+        return is_positional ? upper_case(name) : name;
+    }
+
+    std::string make_option_opts(const CLI::Option* option) const override {
+        if (option->get_positional() || option->get_type_size() == 0) return {};
+        const std::string type = option->get_type_name();
+        const std::string base = type.substr(0, type.find(':'));
+        const bool is_number = base == "FLOAT" || base == "INT" || base == "UINT";
+        return fmt::format(" {}{}",
+                           is_number        ? "N"
+                           : base == "TEXT" ? "NAME"
+                                            : base,
+                           option->get_expected_max() > 1 ? " ..." : "");
+    }
+
+    // Ranges and needed options are said with the description; CLI11's lists of what is allowed
+    // stand in it.
+    std::string make_option_desc(const CLI::Option* option) const override {
+        std::vector<std::string> notes;
+        const std::string type = option->get_type_name();
+        const std::size_t colon = type.find(':');
+        if (colon != std::string::npos && type[colon + 1] != '{') {
+            notes.push_back(type.substr(colon + 1));
+        }
+        for (const CLI::Option* const other : option->get_needs()) {
+            if (!other->get_positional()) notes.push_back("with " + other->get_name());
+        }
+        if (option->get_required() && !option->get_positional()) notes.emplace_back("required");
+        const std::string& text = option->get_description();
+        return wrap(notes.empty() ? text : fmt::format("{} ({})", text, fmt::join(notes, "; ")));
     }
 
 private:
-    static std::string help_of_command(const CLI::App& command) {
-        const std::vector<const CLI::Option*> positionals =
-            command.get_options([](const CLI::Option* option) { return option->get_positional(); });
-        std::string page = "palpa " + command.get_name();
-        for (const CLI::Option* const positional : positionals) {
-            const std::string name = upper_name(*positional);
-            page += positional->get_required() ? " " + name : " [" + name + "]";
-        }
-        page += " [OPTION ...]\n\n" + command.get_description() + "\n";
-        if (!positionals.empty()) page += "\n";
-        for (const CLI::Option* const positional : positionals) {
-            page += entry(upper_name(*positional), describe_option(*positional));
-        }
-        for (const std::string& group : command.get_groups()) {
-            const auto options = command.get_options([&](const CLI::Option* option) {
-                return option->get_group() == group && option->nonpositional();
-            });
-            if (group.empty() || options.empty()) continue;
-            page += "\n" + group + "\n";
-            for (const CLI::Option* const option : options) {
-                page += entry(option_names(*option), describe_option(*option));
-            }
-        }
-        if (!command.get_footer().empty()) page += "\n" + command.get_footer();
-        return page;
-    }
-
-    static std::string help_of_program(const CLI::App& program) {
-        std::string page =
-            "Palpa: feel molecules\n\n"
-            "  palpa                   opens a window with all scenes; without a display, lists "
-            "them\n"
-            "  palpa FILE              opens a scene, or prepares and opens a structure (.pdb, "
-            ".cif)\n"
-            "  palpa COMMAND [ARGUMENT ...]\n"
-            "  palpa help COMMAND      explains one of these:\n";
-        std::vector<std::string> groups;
-        for (const CLI::App* const command : program.get_subcommands({})) {
-            const std::string group = command->get_group();
-            if (std::find(groups.begin(), groups.end(), group) == groups.end()) {
-                groups.push_back(group);
-            }
-        }
-        for (const std::string& group : groups) {
-            page += "\n" + group + "\n";
-            for (const CLI::App* const command : program.get_subcommands(
-                     [&](const CLI::App* app) { return app->get_group() == group; })) {
-                constexpr std::size_t column = 14;
-                const std::string start = "  " + command->get_name();
-                page += start + wrap(command->get_description(), start.size(), column);
-                page += std::string(column, ' ') + first_example(*command) + "\n";
-            }
-        }
-        return page + "\n" + exit_codes;
-    }
-
-    static std::string first_example(const CLI::App& command) {
-        const std::string& footer = command.get_footer();
-        const std::size_t begin = footer.find(example_indent);
-        if (begin == std::string::npos) return "palpa " + command.get_name();
-        return footer.substr(begin + 2, footer.find('\n', begin) - begin - 2);
-    }
+    std::string usage_;
 };
 
 // Every option of a command, as it is typed.
@@ -251,17 +185,17 @@ std::string cite_connect(std::string message) {
 
 }  // namespace
 
-void describe(CLI::App& command, const std::string& group, const std::vector<std::string>& examples,
+void describe(CLI::App& command, const std::vector<std::string>& examples,
               const std::string& note) {
-    command.group(group);
     std::string footer = examples.size() == 1 ? "Example\n" : "Examples\n";
     for (const std::string& example : examples) footer += "  " + example + "\n";
     if (!note.empty()) footer += "\n" + note + "\n";
+    footer.pop_back();  // CLI11 ends the line
     command.footer(footer);
 }
 
-std::shared_ptr<CLI::FormatterBase> build_help_formatter() {
-    return std::make_shared<HelpFormatter>();
+std::shared_ptr<CLI::FormatterBase> build_help_formatter(const std::string& usage) {
+    return std::make_shared<HelpFormatter>(usage);
 }
 
 void add_setting(CLI::App& command, const std::string& option, const std::string& help,
@@ -300,20 +234,20 @@ std::optional<std::string> explain_command(const CLI::App& program, const std::s
     if (command.starts_with("-") || std::find(names.begin(), names.end(), command) != names.end()) {
         return std::nullopt;
     }
-    for (const auto& [before, now] : renamed_commands) {
-        if (command == before)
-            return fmt::format("'palpa {}' has a new name: 'palpa {}'", before, now);
+    for (const auto& [before, now] : moved_commands) {
+        if (command == before) return fmt::format("'palpa {}' is '{}' now", before, now);
     }
     const std::string near = hint_of(command, names);
-    return fmt::format("palpa: unknown command '{}'{}; see palpa --help", printable(command),
-                       near.empty() ? scene_hint(command) : near);
+    return fmt::format("{0}: unknown command '{1}'{2}; see {0} --help", program.get_name(),
+                       printable(command), near.empty() ? scene_hint(command) : near);
 }
 
 std::string explain(const CLI::ParseError& error, const CLI::App& program,
                     const std::string& command) {
     if (command.starts_with("-")) {
-        return fmt::format("palpa: unknown option '{}' without a command{}; see palpa --help",
-                           printable(command), hint_of(command, names_of_options(program)));
+        return fmt::format("{0}: unknown option '{1}' without a command{2}; see {0} --help",
+                           program.get_name(), printable(command),
+                           hint_of(command, names_of_options(program)));
     }
     std::string what = error.what();
     if (const std::size_t colon = what.find(": ");
@@ -330,22 +264,18 @@ std::string explain(const CLI::ParseError& error, const CLI::App& program,
             "(--without, --as)";
     }
     if (what == "scene is required") what = "a scene is required; 'palpa' alone lists the scenes";
-    return fmt::format("palpa {}: {}; see palpa help {}", command, what, command);
+    return fmt::format("{0} {1}: {2}; see {0} help {1}", program.get_name(), command, what);
 }
 
-std::vector<std::string> expand_help(std::vector<std::string> arguments) {
-    if (arguments.size() > 2 && arguments[0] == "scene" && arguments[1] == "--help") {
-        arguments.erase(arguments.begin() + 1);
-    } else if (arguments.size() > 2 && arguments[0] == "help" && arguments[1] == "scene") {
-        arguments.erase(arguments.begin());
-    } else if (arguments.size() > 1 && arguments[0] == "help" &&
-               arguments[1].find('.') != std::string::npos) {
-        arguments[0] = "scene";
-    }
+std::vector<std::string> expand_help(const CLI::App& program, std::vector<std::string> arguments) {
     if (arguments.empty() || arguments[0] != "help") return arguments;
-    arguments.erase(arguments.begin());
-    if (arguments.empty() || !arguments.back().starts_with("-")) arguments.emplace_back("--help");
-    return arguments;
+    if (arguments.size() == 1) return {"--help"};
+    const bool is_command = !program
+                                 .get_subcommands([&](const CLI::App* command) {
+                                     return command->get_name() == arguments[1];
+                                 })
+                                 .empty();
+    return is_command ? std::vector{arguments[1], std::string("--help")} : arguments;
 }
 
 std::vector<std::string> move_structure_first(std::vector<std::string> arguments) {

@@ -8,14 +8,12 @@
 
 namespace palpa {
 
-// The group that a command is listed in, and examples, of which the program's own help shows the
-// first. `note`: what else its help ends with.
-void describe(CLI::App& command, const std::string& group, const std::vector<std::string>& examples,
+// Examples of a command, and what else its help ends with.
+void describe(CLI::App& command, const std::vector<std::string>& examples,
               const std::string& note = "");
 
-// Help in the form of a page: usage, options by group, examples. Of the program: commands by group
-// with an example each, and exit codes.
-std::shared_ptr<CLI::FormatterBase> build_help_formatter();
+// Help as CLI11 prints it. `usage`: lines above the list of the program's commands.
+std::shared_ptr<CLI::FormatterBase> build_help_formatter(const std::string& usage);
 
 // An option that is short for a scene key: "--mode 2" is "--set coupling.mode=2".
 void add_setting(CLI::App& command, const std::string& option, const std::string& help,
@@ -31,9 +29,8 @@ std::optional<std::string> explain_command(const CLI::App& program, const std::s
 std::string explain(const CLI::ParseError& error, const CLI::App& program,
                     const std::string& command);
 
-// "palpa help run" as "palpa run --help"; "palpa scene --help KEY", "palpa help scene KEY" and
-// "palpa help TABLE.KEY" as "palpa scene KEY".
-std::vector<std::string> expand_help(std::vector<std::string> arguments);
+// "palpa help run" as "palpa run --help"; help of what is no command stays as it is.
+std::vector<std::string> expand_help(const CLI::App& program, std::vector<std::string> arguments);
 
 // "palpa prepare --toppar A B x.pdb" as "palpa prepare x.pdb --toppar A B": an option that takes
 // several files would take the structure too.

@@ -248,7 +248,7 @@ void add_connect(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& connect = *program.add_subcommand(
         "connect", "Feel a running engine (GROMACS, LAMMPS, NAMD) over IMD");
     ConnectOptions& options = own_options<ConnectOptions>(connect, chosen, connect_command);
-    describe(connect, "Feel",
+    describe(connect,
              {"palpa connect 127.0.0.1:8888 --topology system.psf",
               "palpa connect 127.0.0.1:8888 --topology run.gro --program gromacs --hold \"CA 25\"",
               "palpa connect 127.0.0.1:8888 --topology system.psf --headless --seconds 10 --lead "

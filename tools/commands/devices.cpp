@@ -284,7 +284,7 @@ void add_devices(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& devices = *program.add_subcommand(
         "devices", "Check devices: what is connected, what works, and how to fix what does not");
     DevicesOptions& options = own_options<DevicesOptions>(devices, chosen, devices_command);
-    describe(devices, "Feel", {"palpa devices", "palpa devices omni --force-test"},
+    describe(devices, {"palpa devices", "palpa devices omni --force-test"},
              "Exit code 0 if a device other than the emulated ones can be used, else 1.");
     devices.add_option("device", options.name,
                        "device to check, a name as for --device of palpa run (default: all)");

@@ -40,7 +40,7 @@ constexpr std::array<std::string_view, 4> electrostatic_names{"switch", "shift",
                                                               "fswitch"};
 constexpr std::array<std::string_view, 2> van_der_waals_names{"switch", "fswitch"};
 constexpr std::array<std::string_view, 2> method_names{"all-pairs", "cutoff"};
-constexpr std::array<std::string_view, 2> end_names{"smooth", "sharp"};
+constexpr std::array<std::string_view, 2> solvent_end_names{"smooth", "sharp"};
 constexpr std::array<std::string_view, 2> exponential_names{"exact", "table"};
 
 // Å. No two nuclei are that close; the shortest bonds, to hydrogen, are ten times as long.
@@ -50,8 +50,8 @@ constexpr std::size_t most_warnings = 8;
 // With --solvent, how it ends: all as scenes have it, or solvation alone as EEF1 is published.
 SolvationEnd find_end(const EnergyOptions& options) {
     if (choice_called("--solvent", options.solvent, solvent_names) == 1) {
-        const std::size_t end =
-            choice_called("--solvent-end", options.solvent_end.value_or("smooth"), end_names);
+        const std::size_t end = choice_called(
+            "--solvent-end", options.solvent_end.value_or("smooth"), solvent_end_names);
         return end == 0 ? SolvationEnd::Smooth : SolvationEnd::Sharp;
     }
     if (options.solvent_end || options.solvent_exp || options.solvent_table || options.per_atom ||
@@ -288,7 +288,7 @@ int energy_command(const EnergyOptions& options) {
 void add_energy(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& energy = *program.add_subcommand("energy", "Print energies term by term, and forces");
     EnergyOptions& options = own_options<EnergyOptions>(energy, chosen, energy_command);
-    describe(energy, "Look and measure",
+    describe(energy,
              {"palpa energy system.psf --coordinates system.crd --toppar top_all36_prot.rtf "
               "par_all36m_prot.prm",
               "palpa energy solvent.psf --coordinates solvent.crd --toppar system.prm solvent.prm "

@@ -256,7 +256,7 @@ void add_engine(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& engine = *program.add_subcommand(
         "engine", "Write the input of a GROMACS or LAMMPS run that Palpa can connect to");
     EngineOptions& options = own_options<EngineOptions>(engine, chosen, engine_command);
-    describe(engine, "Other engines",
+    describe(engine,
              {"palpa engine gromacs scenes/hairpin/vacuum.toml -o run",
               "palpa engine gromacs -o run --box 18.64,18.64,18.64 --psf system.psf --coordinates "
               "system.crd --toppar system.prm",

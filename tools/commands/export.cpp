@@ -60,9 +60,8 @@ void add_export(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& command =
         *program.add_subcommand("export", "Write coordinates of a scene for other programs");
     ExportOptions& options = own_options<ExportOptions>(command, chosen, export_command);
-    describe(command, "Look and measure",
-             {"palpa export scenes/hiv -o hiv.pdb", "palpa export hiv -o hiv.psf --time 2",
-              "palpa export scenes/water -o moved.gro --of moved"});
+    describe(command, {"palpa export scenes/hiv -o hiv.pdb", "palpa export hiv -o hiv.psf --time 2",
+                       "palpa export scenes/water -o moved.gro --of moved"});
     command.add_option("scene", options.scene, "scene folder or file")->required();
     command
         .add_option("-o,--output", options.file,

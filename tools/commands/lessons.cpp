@@ -177,7 +177,7 @@ void add_lessons(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& lessons = *program.add_subcommand(
         "lessons", "List and open guided lessons, step by step with checks");
     LessonsCommand& command = own_options<LessonsCommand>(lessons, chosen, lessons_command);
-    describe(lessons, "Feel",
+    describe(lessons,
              {"palpa lessons", "palpa lessons play water", "palpa lessons play water --headless",
               "palpa lessons play water --headless --by mouse"},
              "Exit code of --headless: 0 if every step is done, else 1.");

@@ -146,7 +146,8 @@ void print_licences(const std::vector<std::string>& about) {
         fmt::print("  {:<20} {:<9} {:<22} {:<46} {}\n", library.name, version_of(library),
                    library.use, library.home, library.licence);
     }
-    fmt::print("\nThe force field has terms of its own:\n\n");
+    fmt::print("\nThe force field, {}, has terms of its own:\n\n",
+               find_built_in_force_field().string());
     for (const std::string& line : about) fmt::print("  {}\n", line);
     fmt::print("\nCite for implicit solvent:\n\n  {}\n", solvation);
 }
@@ -185,7 +186,7 @@ void add_licences(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& command = *program.add_subcommand(
         "licences", "Libraries of the program with version and licence; whom to cite");
     LicencesOptions& options = own_options<LicencesOptions>(command, chosen, licences_command);
-    describe(command, "Look and measure", {"palpa licences", "palpa licences --json"});
+    describe(command, {"palpa licences", "palpa licences --json"});
     command.add_flag("--json", options.json, "print as JSON");
     command.add_flag("--spdx", options.spdx, "print a list of parts (SBOM) as SPDX 2.3 in JSON");
 }

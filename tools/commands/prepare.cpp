@@ -364,10 +364,9 @@ void add_prepare(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& prepare = *program.add_subcommand(
         "prepare", "Prepare a structure: add hydrogens, patches and topology, make a scene");
     PrepareOptions& options = own_options<PrepareOptions>(prepare, chosen, prepare_command);
-    describe(prepare, "Make scenes",
-             {"palpa prepare 1hsg.pdb --without MK1 -o my-protease",
-              "palpa prepare complex.pdb -o complex --toppar ligand.str",
-              "palpa prepare step1.crd --topology step1.psf -o mine"});
+    describe(prepare, {"palpa prepare 1hsg.pdb --without MK1 -o my-protease",
+                       "palpa prepare complex.pdb -o complex --toppar ligand.str",
+                       "palpa prepare step1.crd --topology step1.psf -o mine"});
     prepare
         .add_option("structure", options.structure,
                     "structure file: .pdb, .ent, .cif or .crd, also with .gz")

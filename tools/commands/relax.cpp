@@ -76,7 +76,7 @@ void print_json(const StartReport& start, const FromFiles& from) {
 }
 
 // Stands in the title of what is written, by which it is known again.
-constexpr std::string_view coordinates_mark = "* Written by palpa relax.\n";
+constexpr std::string_view relaxed_mark = "* Written by palpa relax.\n";
 
 }  // namespace
 
@@ -84,9 +84,8 @@ int relax_command(const RelaxOptions& options) {
     const SceneDescription scene = read_scene(options.scene, options.settings);
     print_notes(scene.notes);
     const Existing existing =
-        options.coordinates
-            ? check_output(*options.coordinates, coordinates_mark, options.overwrites)
-            : Existing::Refuse;
+        options.coordinates ? check_output(*options.coordinates, relaxed_mark, options.overwrites)
+                            : Existing::Refuse;
     ProgressLine progress;
     const World world = load_world(scene, progress.stages());
     progress.wipe();
@@ -123,7 +122,7 @@ int relax_command(const RelaxOptions& options) {
 void add_relax(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& relax = *program.add_subcommand("relax", "Relax the flexible molecules of a scene");
     RelaxOptions& options = own_options<RelaxOptions>(relax, chosen, relax_command);
-    describe(relax, "Make scenes", {"palpa relax scenes/hiv/flexible.toml -o rest.crd"});
+    describe(relax, {"palpa relax scenes/hiv/flexible.toml -o rest.crd"});
     relax.add_option("scene", options.scene, "scene folder or file")->required();
     relax.add_option("-o,--output", options.coordinates,
                      "write the relaxed coordinates to this CHARMM file (.crd)");

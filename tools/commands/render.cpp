@@ -391,12 +391,11 @@ void add_render(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& render =
         *program.add_subcommand("render", "Draw a picture or a film of a scene, without a display");
     RenderOptions& options = own_options<RenderOptions>(render, chosen, render_command);
-    describe(render, "Look and measure",
-             {"palpa render scenes/hiv -o tunnel.png",
-              "palpa render scenes/hiv -o pocket.png --representation surface --of protein "
-              "--opacity 0.5",
-              "palpa render scenes/water --film water.mp4 --seconds 4",
-              "palpa render scenes/water --film water-frames --seconds 4"});
+    describe(render, {"palpa render scenes/hiv -o tunnel.png",
+                      "palpa render scenes/hiv -o pocket.png --representation surface --of protein "
+                      "--opacity 0.5",
+                      "palpa render scenes/water --film water.mp4 --seconds 4",
+                      "palpa render scenes/water --film water-frames --seconds 4"});
     render.add_option("scene", options.scene, "scene folder or file")->required();
     render.add_option("-o,--output", options.image, "PNG file to write")->type_name("FILE.png");
     CLI::Option* const film =

@@ -209,9 +209,8 @@ void add_replay(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& replay = *program.add_subcommand(
         "replay", "Replay a recorded session; --verify checks that every digit is the same");
     ReplayOptions& options = own_options<ReplayOptions>(replay, chosen, replay_command);
-    describe(
-        replay, "Experiments",
-        {"palpa replay recordings/water --verify", "palpa replay recordings/session --window"});
+    describe(replay, {"palpa replay recordings/water --verify",
+                      "palpa replay recordings/session --window"});
     replay.add_option("recording", options.recording, "folder of palpa run --record")->required();
     replay.add_flag("--window", options.window,
                     "in a window, where a recorded session of a window can be stopped and looked "

@@ -6,7 +6,6 @@
 #include "devices/emulated_omni.h"
 #include "devices/open_device.h"
 #include "experiments/emulated_hand.h"
-#include "scene/fields.h"
 #include "scene/read_scene.h"
 #include "session/lesson_meter.h"
 #include "session/recording.h"
@@ -77,14 +76,6 @@ std::optional<PlaybackChoice> playback_choice(const RunOptions& options) {
                         .frame = options.trajectory_frame - 1};
     if (*order.paused) order.frames_per_s.reset();  // that of whoever lets it play
     return PlaybackChoice{*options.trajectory, order};
-}
-
-void print_scene_keys() {
-    fmt::print("| key | value | unless given | meaning |\n| --- | --- | --- | --- |\n");
-    for (const FieldNote& field : list_fields()) {
-        fmt::print("| `{}` | {} | {} | {} |\n", field.key, field.type, field.fallback,
-                   field.meaning);
-    }
 }
 
 namespace {
@@ -422,23 +413,15 @@ void add_headless_options(CLI::App& run, RunOptions& options) {
 void add_run(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& run = *program.add_subcommand("run", "Run a scene in a window, or without one");
     RunOptions& options = own_options<RunOptions>(run, chosen, run_command);
-    describe(run, "Feel",
-             {"palpa run hiv", "palpa run scenes/water --headless --record recordings/water",
-              "palpa run scenes/water --headless --mode 2 --period-ms 14 --friction 0",
-              "palpa run scenes/hiv/flexible.toml --play",
-              "palpa run scenes/hiv --trajectory others.xtc",
-              "palpa run scenes/hiv/flexible.toml --headless --serve 8888"});
+    describe(run, {"palpa run hiv", "palpa run scenes/water --headless --record recordings/water",
+                   "palpa run scenes/water --headless --mode 2 --period-ms 14 --friction 0",
+                   "palpa run scenes/hiv/flexible.toml --play",
+                   "palpa run scenes/hiv --trajectory others.xtc",
+                   "palpa run scenes/hiv/flexible.toml --headless --serve 8888"});
     run.add_option("scene", options.scene,
                    "scene folder or file, recorded session.toml, or name of one of Palpa's scenes")
         ->required();
     run.add_flag("--check", options.check_only, "only read the scene and print its problems");
-    run.add_flag_callback(
-        "--keys",
-        [] {
-            print_scene_keys();
-            throw CLI::Success();
-        },
-        "only list the keys of scene files");
     run.option_defaults()->group("Hand and device");
     run.add_option_function<std::string>(
         "--device",

@@ -50,9 +50,6 @@ TrajectorySettings trajectory_settings(const RunOptions& options);
 // Of another program, to be played.
 std::optional<PlaybackChoice> playback_choice(const RunOptions& options);
 
-// All keys of a scene file as a Markdown table, as scenes/keys.md has it.
-void print_scene_keys();
-
 // Throws LoadError on bad input. Returns the exit code.
 int run_command(const RunOptions& options);
 // The same of a scene that was read.

@@ -134,7 +134,7 @@ void add_select(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& command =
         *program.add_subcommand("select", "List the atoms of a scene that an expression selects");
     SelectOptions& options = own_options<SelectOptions>(command, chosen, select_command);
-    describe(command, "Look and measure",
+    describe(command,
              {"palpa select hiv \"protein and within 5 of molecule inhibitor\"",
               "palpa select scenes/hiv \"byres (heavy and within 4 of hand) and not hand\" --json",
               "palpa select scenes/hairpin \"name CA and resid 2:5\""},

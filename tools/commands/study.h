@@ -1,27 +1,27 @@
-// palpa study: the paper's experiment, done by emulated operators or by people, and forced choices.
+// What studies by people (palpa study) and by emulated operators (palpa-lab study) share.
 #pragma once
-#include "experiments/forced_choice.h"
+#include "core/files.h"
+#include "experiments/study_scene.h"
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
-#include <optional>
+#include <initializer_list>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
 
 namespace palpa {
 
-struct StudyCommand {
-    ForcedChoiceOptions choice;  // and the study's
-    bool is_choice = false;
-    std::optional<std::filesystem::path> folder;
-    bool json = false;
-    bool validation = false;  // of a person's window
-};
+// The scene, the modes, the seed, and settings that have an option of their own.
+void add_study_options(CLI::App& command, StudyOptions& options);
+// The number of rounds.
+CLI::Option* add_rounds_option(CLI::App& command, StudyOptions& options);
 
-// Each throws LoadError on bad input and returns the exit code.
-
-int forced_choice_command(const StudyCommand& command);
-
-// A person takes part, in a window: adds their trials to the folder's table, each as soon as it is
-// done; session.json beside it has the settings. Throws LoadError also without a folder or where
-// its trials have other settings, PlatformError without a display.
-int study_in_window(const StudyCommand& command);
+// How every summary begins.
+nlohmann::ordered_json describe_study(const StudyOptions& options);
+// Before anything is played: makes the folder and locks it. What people or operators did before is
+// never written over: throws LoadError where one of `files` is there.
+std::unique_ptr<FolderLock> make_study_folder(const std::filesystem::path& folder,
+                                              std::initializer_list<const char*> files);
 
 }  // namespace palpa

@@ -1,0 +1,25 @@
+// What the programs have in common: arguments in, one command called, errors as exit codes.
+#pragma once
+#include "tools/commands/command.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace palpa {
+
+struct Program {
+    std::string name;   // as it is typed
+    std::string title;  // of its help
+    std::string usage;  // lines below it; then the commands, in the order in which they are added
+    std::string footer;
+    void (*add_commands)(CLI::App& program, ProgramCommand& chosen) = nullptr;
+    // The exit code of arguments that begin with no command; nothing where one is to be done.
+    // Unset: without arguments the help is printed.
+    std::optional<int> (*run_without_command)(const std::vector<std::string>& arguments) = nullptr;
+};
+
+// Does what main has to. Returns the exit code.
+int run_program(const Program& program, int argc, char** argv);
+
+}  // namespace palpa
