@@ -2,6 +2,7 @@
 
 #include "assembly/parts.h"
 #include "core/assertion.h"
+#include "math/eigenvectors.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -12,12 +13,11 @@ namespace {
 
 // Without the direction in which nothing has inertia: no torque of the atoms' forces has it either.
 Mat3 pseudo_inverse(const Mat3& inertia) {
-    const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertia);
+    const auto [moments, axes] = find_eigenvectors(inertia);
     Mat3 result = Mat3::Zero();
     for (int i = 0; i < 3; ++i) {
-        const double moment = solver.eigenvalues()[i];
-        const Vec3 axis = solver.eigenvectors().col(i);
-        if (moment > 1e-6 * solver.eigenvalues()[2]) result += axis * axis.transpose() / moment;
+        const Vec3 axis = axes.col(i);
+        if (moments[i] > 1e-6 * moments[2]) result += axis * axis.transpose() / moments[i];
     }
     return result;
 }
@@ -348,7 +348,14 @@ void upward_pass(const AssemblyTree& tree, AssemblyState& state) noexcept {
 Vec6 push_for(const AssemblyTree& tree, std::size_t molecule, const Mat6& phi,
               const Vec6& acceleration) noexcept {
     if (tree.is_linear[tree.bases[molecule]] == 0) return phi.llt().solve(acceleration);
-    return Eigen::CompleteOrthogonalDecomposition<Mat6>(phi).solve(acceleration);
+    // Nothing pushes along what has no inertia.
+    const auto [values, axes] = find_eigenvectors(phi);
+    Vec6 push = Vec6::Zero();
+    for (int i = 0; i < 6; ++i) {
+        if (values[i] > 1e-12 * values[5])
+            push += axes.col(i) * (axes.col(i).dot(acceleration) / values[i]);
+    }
+    return push;
 }
 
 BaseMotion find_base_motion(const AssemblyTree& tree, const AssemblyState& state,

@@ -1,9 +1,9 @@
 #include "assembly/tree.h"
 
 #include "core/load_error.h"
+#include "math/eigenvectors.h"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <numeric>
 #include <string>
@@ -278,7 +278,7 @@ bool is_in_line(std::span<const AtomShare> shares, std::span<const Vec3> positio
         const Vec3 arm = positions[share.atom] - centre;
         spread += share.mass * arm * arm.transpose();
     }
-    const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvalues();
+    const Vec3 moments = find_eigenvectors(spread).values;
     return moments[1] <= 1e-6 * moments[2];
 }
 

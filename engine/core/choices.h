@@ -18,12 +18,9 @@ inline constexpr std::array<std::string_view, 2> gain_shape_names{"scalar", "ten
 
 // Method of relaxing flexible molecules (statics/relax_joints.h).
 enum class RelaxMethod : std::uint8_t {
-    QuasiStatic,    // repeated quasi-static steps of the paper
-    LimitedMemory,  // L-BFGS, coordinates scaled by the distance of their atoms
-    InverseMass,    // L-BFGS, coordinates coupled by the mass matrix
-    SecondOrder,    // statics/second_order_step.h; without a hand, InverseMass
+    QuasiStatic,  // repeated quasi-static steps of the paper
+    SecondOrder,  // statics/second_order_step.h; without a hand L-BFGS
 };
-inline constexpr std::array<std::string_view, 4> relax_method_names{
-    "quasi-static", "limited-memory", "inverse-mass", "second-order"};
+inline constexpr std::array<std::string_view, 2> relax_method_names{"quasi-static", "second-order"};
 
 }  // namespace palpa

@@ -37,17 +37,13 @@ std::string list_file_versions() {
 std::optional<std::string> check_version(std::string_view kind, FileVersion stated,
                                          FileVersion ours, const TextPlace& place,
                                          std::string_view of_unknown) {
-    const FileVersion last_of_major{ours.major + 1, 0};
-    if (stated < unnumbered_version) {
-        throw LoadError(place, fmt::format("{0} format {1} does not exist; expected {0} format 1 "
-                                           "to {2}",
-                                           kind, to_string(stated), to_string(ours)));
-    }
-    if (stated >= last_of_major) {
-        throw LoadError(place, fmt::format("{0} format {1} is newer than this program, which reads "
-                                           "{0} formats 1 to {2}; expected one of these, or a "
-                                           "newer Palpa to read it with",
-                                           kind, to_string(stated), to_string(ours)));
+    if (stated.major != ours.major) {
+        const bool is_newer = stated > ours;
+        throw LoadError(place, fmt::format("{} format {} is {} than this program reads; expected "
+                                           "format {}{}",
+                                           kind, to_string(stated), is_newer ? "newer" : "older",
+                                           to_string(ours),
+                                           is_newer ? ", or a newer Palpa to read it with" : ""));
     }
     if (stated <= ours) return std::nullopt;
     return fmt::format("{} format {} is newer than {}, which this program writes: {}", kind,

@@ -16,11 +16,10 @@ struct FileVersion {
     friend auto operator<=>(const FileVersion&, const FileVersion&) = default;
 };
 
-// What this program writes. Files without a number are of version 1, which is read too.
-// Scene: scene.toml, its key `format`. Recording: columns of trace.csv and keys of summary.json,
-// the number is in session.toml. Journal: journal.txt.
+// What this program writes; it reads versions of the same major number.
+// Scene: scene.toml, its key `format`, of this version where it is not given. Recording: columns of
+// trace.csv and keys of summary.json, the number is in session.toml. Journal: journal.txt.
 inline constexpr FileVersion scene_version{2, 0}, recording_version{2, 1}, journal_version{2, 1};
-inline constexpr FileVersion unnumbered_version{1, 0};
 
 // "2.0".
 std::string to_string(FileVersion version);
@@ -31,7 +30,7 @@ std::optional<FileVersion> find_version(std::string_view text);
 // "scene 2.0, recording 2.0, journal 2.0".
 std::string list_file_versions();
 
-// Throws LoadError for a version that cannot be read: one of a newer major number, and 0.
+// Throws LoadError for a version of another major number.
 // Returns a note for one of a newer minor number, which ends with `of_unknown`, else nothing.
 // `kind`: "scene", "journal".
 std::optional<std::string> check_version(

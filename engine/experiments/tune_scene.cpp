@@ -10,6 +10,7 @@
 #include "experiments/emulated_hand.h"
 #include "formats/crd.h"
 #include "formats/psf.h"
+#include "math/eigenvectors.h"
 #include "prepare/phosphates.h"
 #include "prepare/region_choice.h"
 #include "prepare/residues.h"
@@ -188,7 +189,7 @@ void take_way(const Vec3& way, Tuning& tuning) {
     tuning.way = way;
     if (!tuning.is_turned) return;
     std::vector<Vec3>& positions = tuning.rest.positions;
-    const Mat3 turn = Quat::FromTwoVectors(way, Vec3::UnitX()).toRotationMatrix();
+    const Mat3 turn = turn_between(way, Vec3::UnitX()).toRotationMatrix();
     Vec3 middle = Vec3::Zero();
     for (const Vec3& place : positions) middle += place / static_cast<double>(positions.size());
     for (Vec3& place : positions) place = (turn * (place - middle)).unaryExpr(&rounded);

@@ -33,15 +33,13 @@ struct Terms {
     V a, b, van_der_waals, electrostatic;
 };
 
-// S and its slope S'/r, with y = (r^2 - m^2)/(c^2 - m^2), not below 0:
-//   S = 1 - y^2 (3 - 2y),  S'/r = -12 y (1 - y)/(c^2 - m^2)
+// S, with y = (r^2 - m^2)/(c^2 - m^2), not below 0:  S = 1 - y^2 (3 - 2y)
 struct Switching {
     explicit HWY_INLINE Switching(const PairScheme& scheme) {
         const double c2 = scheme.cutoff * scheme.cutoff;
         const double m2 = scheme.switch_from * scheme.switch_from;
         scale = all(1 / (c2 - m2));
         offset = all(-m2 / (c2 - m2));
-        slope_scale = all(-12 / (c2 - m2));
     }
     HWY_INLINE V place(V r2) const {
         return hn::Max(hn::MulAdd(r2, scale, offset), hn::Zero(floats));
@@ -49,16 +47,17 @@ struct Switching {
     HWY_INLINE V value(V y) const {
         return hn::NegMulAdd(hn::Mul(y, y), hn::NegMulAdd(y, all(2), all(3)), all(1));
     }
-    HWY_INLINE V slope(V y) const { return hn::Mul(slope_scale, hn::NegMulAdd(y, y, y)); }
 
-    V scale, offset, slope_scale;
+    V scale, offset;
 };
 
-// The same with a second derivative that is continuous:
+// With a second derivative that is continuous, and its slope:
 //   S = 1 - y^3 (10 - 15 y + 6 y^2),  S'/r = -60 y^2 (1 - y)^2/(c^2 - m^2)
 struct SmoothSwitching : Switching {
     explicit HWY_INLINE SmoothSwitching(const PairScheme& scheme) : Switching(scheme) {
-        slope_scale = hn::Mul(slope_scale, all(-5.0 / 12));
+        const double c2 = scheme.cutoff * scheme.cutoff;
+        slope_scale =
+            hn::Mul(all(-12 / (c2 - scheme.switch_from * scheme.switch_from)), all(-5.0 / 12));
     }
     // 1 from c on, where neither is anything.
     HWY_INLINE V place(V r2) const { return hn::Min(Switching::place(r2), all(1)); }
@@ -71,6 +70,8 @@ struct SmoothSwitching : Switching {
         const V both = hn::NegMulAdd(y, y, y);
         return hn::Mul(hn::Mul(slope_scale, energy), hn::Mul(both, both));
     }
+
+    V slope_scale;
 };
 
 // The forms of forces/pair_law.h, put so that no two large numbers cancel in single precision.
@@ -84,7 +85,6 @@ public:
 
     explicit HWY_INLINE Electrostatics(const PairScheme& scheme) : switching_(scheme) {
         const double c = scheme.cutoff, m = scheme.switch_from, width = c * c - m * m;
-        inverse_c_ = all(1 / c);
         inverse_c2_ = all(1 / (c * c));
         inverse_c2_4_ = all(4 / (c * c));
         if constexpr (End == ElectrostaticCutoff::ForceSwitch) {
@@ -112,18 +112,6 @@ public:
             terms.a = hn::MulAdd(steepness(charges), unit, terms.a);
             if constexpr (WithEnergy)
                 terms.electrostatic = hn::MulAdd(charges, unit, terms.electrostatic);
-        } else if constexpr (End == ElectrostaticCutoff::Switch) {
-            const V y = switching_.place(r2);
-            const V energy = hn::Mul(u, switching_.value(y));
-            terms.a = hn::Add(terms.a, steepness(energy));
-            terms.b = hn::NegMulAdd(u, switching_.slope(y), terms.b);
-            if constexpr (WithEnergy) terms.electrostatic = hn::Add(terms.electrostatic, energy);
-        } else if constexpr (End == ElectrostaticCutoff::Shift) {
-            const V left = hn::NegMulAdd(r2, inverse_c2_, all(1));
-            const V once = hn::Mul(u, left), energy = hn::Mul(once, left);
-            terms.a = hn::Add(terms.a, steepness(energy));
-            terms.b = hn::MulAdd(hn::Mul(once, all(4)), inverse_c2_, terms.b);
-            if constexpr (WithEnergy) terms.electrostatic = hn::Add(terms.electrostatic, energy);
         } else if constexpr (End == ElectrostaticCutoff::CubicShift) {
             // For U = q/r^n and left = 1 - (r/c)^2: -r (U left^3)' = U left^2 (n + (6 - n) (r/c)^2)
             const V left = hn::Max(hn::NegMulAdd(r2, inverse_c2_, all(1)), hn::Zero(floats));
@@ -134,13 +122,6 @@ public:
                 hn::MulAdd(twice, DistanceDielectric ? inverse_c2_4_ : inverse_c2_5(), terms.b);
             if constexpr (WithEnergy)
                 terms.electrostatic = hn::MulAdd(twice, left, terms.electrostatic);
-        } else if constexpr (End == ElectrostaticCutoff::ForceShift) {
-            terms.a = hn::Add(terms.a, u);
-            terms.b = hn::NegMulAdd(u, inverse_c2_, terms.b);
-            if constexpr (WithEnergy) {
-                const V left = hn::NegMulAdd(hn::Mul(r2, inverse_r), inverse_c_, all(1));
-                terms.electrostatic = hn::MulAdd(hn::Mul(u, left), left, terms.electrostatic);
-            }
         } else {
             terms.a = hn::MulAdd(u, switching_.value(switching_.place(r2)), terms.a);
             if constexpr (WithEnergy) {
@@ -166,7 +147,7 @@ private:
     }
 
     Switching switching_;
-    V inverse_c_, inverse_c2_, inverse_c2_4_;
+    V inverse_c2_, inverse_c2_4_;
     V m_ = hn::Zero(floats), p0_ = m_, p1_ = m_, p2_ = m_, p3_ = m_, shift_ = m_;
 };
 
@@ -205,15 +186,11 @@ public:
         const V s6 = hn::Mul(hn::Mul(s2, s2), s2), well = hn::Mul(epsilon12, s6);
         terms.a = hn::MulSub(well, s6, well);
         terms.b = hn::Zero(floats);
-        if constexpr (End == VanDerWaalsCutoff::Switch || End == VanDerWaalsCutoff::SmoothSwitch) {
+        if constexpr (End == VanDerWaalsCutoff::SmoothSwitch) {
             const V y = switching_.place(r2), value = switching_.value(y);
             const V energy = hn::Mul(well, hn::Sub(s6, all(2)));
             terms.a = hn::Mul(terms.a, value);
-            if constexpr (End == VanDerWaalsCutoff::SmoothSwitch) {
-                terms.b = switching_.taken(energy, y);
-            } else {
-                terms.b = hn::Mul(hn::Mul(energy, all(-1.0 / 12)), switching_.slope(y));
-            }
+            terms.b = switching_.taken(energy, y);
             if constexpr (WithEnergy)
                 terms.van_der_waals = hn::MulAdd(energy, value, terms.van_der_waals);
         } else if constexpr (WithEnergy) {
@@ -473,33 +450,6 @@ JobSum sum_with_laws(const PairJob& job) {
     return Kernel<Electrostatics, VanDerWaals, false>(job).sum(job.begin, job.end);
 }
 
-template <ElectrostaticCutoff End, VanDerWaalsCutoff VanDerWaalsEnd>
-JobSum sum_with_dielectric(const PairJob& job) {
-    if constexpr (End != ElectrostaticCutoff::ForceShift &&
-                  End != ElectrostaticCutoff::ForceSwitch) {
-        // Rare: without code of its own for forces alone.
-        if (job.scheme->distance_dielectric)
-            return Kernel<Electrostatics<End, true>, VanDerWaals<VanDerWaalsEnd>, true>(job).sum(
-                job.begin, job.end);
-    }
-    return sum_with_laws<Electrostatics<End, false>, VanDerWaals<VanDerWaalsEnd>>(job);
-}
-
-template <ElectrostaticCutoff ElectrostaticEnd>
-JobSum sum_with_electrostatics(const PairJob& job) {
-    using enum VanDerWaalsCutoff;
-    switch (job.scheme->van_der_waals) {
-        case Switch:
-            return sum_with_dielectric<ElectrostaticEnd, Switch>(job);
-        case ForceSwitch:
-            return sum_with_dielectric<ElectrostaticEnd, ForceSwitch>(job);
-        case SmoothSwitch:  // with CubicShift alone
-        case None:
-            break;
-    }
-    return sum_with_dielectric<ElectrostaticEnd, None>(job);
-}
-
 // The two ends that are smooth to the second derivative go together.
 JobSum sum_smooth_ends(const PairJob& job) {
     using enum ElectrostaticCutoff;
@@ -511,21 +461,16 @@ JobSum sum_smooth_ends(const PairJob& job) {
 
 JobSum sum_job(const PairJob& job) {
     using enum ElectrostaticCutoff;
-    switch (job.scheme->electrostatics) {
-        case Switch:
-            return sum_with_electrostatics<Switch>(job);
-        case Shift:
-            return sum_with_electrostatics<Shift>(job);
-        case ForceShift:
-            return sum_with_electrostatics<ForceShift>(job);
-        case ForceSwitch:
-            return sum_with_electrostatics<ForceSwitch>(job);
-        case CubicShift:
-            return sum_smooth_ends(job);
-        case None:
-            break;
+    if (job.scheme->electrostatics == CubicShift) return sum_smooth_ends(job);
+    if (job.scheme->electrostatics == ForceSwitch) {
+        return sum_with_laws<Electrostatics<ForceSwitch, false>,
+                             VanDerWaals<VanDerWaalsCutoff::ForceSwitch>>(job);
     }
-    return sum_with_electrostatics<None>(job);
+    using Whole = VanDerWaals<VanDerWaalsCutoff::None>;
+    // Rare: without code of its own for forces alone.
+    if (job.scheme->distance_dielectric)
+        return Kernel<Electrostatics<None, true>, Whole, true>(job).sum(job.begin, job.end);
+    return sum_with_laws<Electrostatics<None, false>, Whole>(job);
 }
 
 }  // namespace

@@ -14,6 +14,21 @@
 #include <utility>
 
 namespace palpa {
+
+bool has_kernel(const PairScheme& scheme) noexcept {
+    switch (scheme.electrostatics) {
+        case ElectrostaticCutoff::None:
+            return scheme.van_der_waals == VanDerWaalsCutoff::None;
+        case ElectrostaticCutoff::ForceSwitch:
+            return scheme.van_der_waals == VanDerWaalsCutoff::ForceSwitch &&
+                   !scheme.distance_dielectric;
+        case ElectrostaticCutoff::CubicShift:
+            return scheme.van_der_waals == VanDerWaalsCutoff::SmoothSwitch;
+        default:
+            return false;
+    }
+}
+
 PairWorkspace build_pair_workspace(const ClusterList& list, const PairParameters& parameters,
                                    PairWorkspace storage) {
     PairWorkspace workspace = std::move(storage);
@@ -39,11 +54,7 @@ PairKernelSum add_cluster_pair_forces(const ClusterList& list, const PairScheme&
                                       std::span<Vec3> forces, PairResult result,
                                       const PairThreads& threads) {
     PALPA_ASSERT(threads.count > 0 && workspace.atoms.size() == list.clusters() + 1);
-    PALPA_ASSERT(!scheme.distance_dielectric ||
-                 (scheme.electrostatics != ElectrostaticCutoff::ForceShift &&
-                  scheme.electrostatics != ElectrostaticCutoff::ForceSwitch));
-    PALPA_ASSERT((scheme.electrostatics == ElectrostaticCutoff::CubicShift) ==
-                 (scheme.van_der_waals == VanDerWaalsCutoff::SmoothSwitch));
+    PALPA_ASSERT(has_kernel(scheme));
     PALPA_ASSERT(!is_outdated(list, positions) && forces.size() == positions.size());
     const bool fits = place_in_clusters(list, positions, workspace.origin, workspace.atoms);
     std::vector<JobSum> sums(threads.count);

@@ -17,9 +17,8 @@ namespace palpa {
 // Settings for all pairs.
 struct PairScheme {
     double coulomb = 0;  // C/eps, kcal Å/mol/e^2
-    // A dielectric of eps r: E = C q q'/(eps r^2). Not with ForceShift or ForceSwitch.
+    // A dielectric of eps r: E = C q q'/(eps r^2).
     bool distance_dielectric = false;
-    // CubicShift goes with SmoothSwitch alone, and that with nothing else.
     ElectrostaticCutoff electrostatics = ElectrostaticCutoff::None;
     VanDerWaalsCutoff van_der_waals = VanDerWaalsCutoff::None;
     double switch_from = 10;  // m, Å
@@ -28,6 +27,11 @@ struct PairScheme {
     // add_cluster_pair_forces leaves it to field/solvation_kernel.h.
     double solvation_begin = 0, solvation_end = 0;
 };
+
+// Whether there is a kernel in single precision: of no cutoff, of ForceSwitch for both without that
+// dielectric (too little would be left of the energy between m and c), and of the smooth ends,
+// CubicShift with SmoothSwitch.
+bool has_kernel(const PairScheme& scheme) noexcept;
 
 // One entry per atom. Every pair follows CHARMM's combination rules; what does not is left out of
 // the list.
@@ -88,8 +92,9 @@ struct PairThreads {
 };
 
 // Adds the forces (kcal/mol/Å, one entry per atom) of all pairs of a list that is not outdated and
-// whose cutoff is at least the scheme's. Pairs are in single precision, sums over more than a
-// thousand of them in double. Repeats to the bit with the same list, processor and threads.
+// whose cutoff is at least the scheme's, which has a kernel. Pairs are in single precision, sums
+// over more than a thousand of them in double. Repeats to the bit with the same list, processor and
+// threads.
 //
 // Against the reference: forces within 2e-5 of the larger of the atom's own and the rms force, the
 // energy within 1e-6 of the sum of all pairs' repulsion, attraction and electrostatic energy, each

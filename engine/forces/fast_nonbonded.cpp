@@ -155,6 +155,15 @@ NonbondedEnergy add_fast_pairs(const Topology& topology, const FastAtoms& atoms,
     return add_pairs_in_double(topology, settings, pairs.list, pairs.replaced, positions, forces);
 }
 
+PairScheme scheme_of(const NonbondedSettings& settings) noexcept {
+    return {settings.coulomb_constant / settings.dielectric,
+            settings.distance_dielectric,
+            settings.electrostatics,
+            settings.van_der_waals,
+            settings.switch_from,
+            settings.cutoff};
+}
+
 }  // namespace
 
 FastAtoms build_fast_atoms(const Topology& topology) {
@@ -174,13 +183,7 @@ FastAtoms build_fast_atoms(const Topology& topology) {
 }
 
 bool has_fast_form(const NonbondedSettings& settings) noexcept {
-    if (settings.solvation == SolvationEnd::Sharp ||
-        (settings.electrostatics == ElectrostaticCutoff::CubicShift) !=
-            (settings.van_der_waals == VanDerWaalsCutoff::SmoothSwitch))
-        return false;
-    // In single precision too little would be left of this energy between m and c.
-    return !(settings.distance_dielectric &&
-             settings.electrostatics == ElectrostaticCutoff::ForceSwitch);
+    return settings.solvation != SolvationEnd::Sharp && has_kernel(scheme_of(settings));
 }
 
 NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAtoms& atoms,
@@ -211,14 +214,8 @@ std::optional<NonbondedEnergy> add_tile_forces(const Topology& topology,
                                                std::span<const Vec3> positions,
                                                std::span<Vec3> forces, PairResult result,
                                                const PairThreads& threads) {
-    const PairScheme scheme{settings.coulomb_constant / settings.dielectric,
-                            settings.distance_dielectric,
-                            settings.electrostatics,
-                            settings.van_der_waals,
-                            settings.switch_from,
-                            settings.cutoff};
-    const PairKernelSum sum =
-        add_cluster_pair_forces(list, scheme, positions, workspace, forces, result, threads);
+    const PairKernelSum sum = add_cluster_pair_forces(list, scheme_of(settings), positions,
+                                                      workspace, forces, result, threads);
     if (!sum.is_sound) return std::nullopt;
     const NonbondedEnergy added =
         add_pair_forces(topology, without_solvation(settings), others, positions, forces);

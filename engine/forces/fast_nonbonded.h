@@ -40,9 +40,8 @@ struct FastAtoms {
 
 FastAtoms build_fast_atoms(const Topology& topology);
 
-// Whether single precision does for them: not for switched forces of a dielectric that grows with
-// the distance, for one of the two smooth ends without the other, and for the sharp end of
-// solvation.
+// Whether they have kernels in single precision (field/pair_kernel.h): not the sharp end of
+// solvation, and of cutoffs those that scenes use.
 bool has_fast_form(const NonbondedSettings& settings) noexcept;
 
 // The present neighbour list and the memory of the kernel; the settings decide whether it contains

@@ -1,8 +1,8 @@
 #include "haptics/gains.h"
 
 #include "core/repeatable.h"
+#include "math/eigenvectors.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -52,8 +52,7 @@ PrintedForceLaw::PrintedForceLaw(const Parameters& p) noexcept
       alpha_2_((p.F_h2 - p.F_h1) / pi),
       delta_1_(p.A_fmax / alpha_1_),
       delta_2_(p.A_fmin / (2 * alpha_2_)),
-      F_0_(p.F_0),
-      F_h2_(p.F_h2) {}
+      F_0_(p.F_0) {}
 
 std::optional<PrintedForceLaw> PrintedForceLaw::find_calibrated(const Parameters& p) noexcept {
     const bool positive =
@@ -91,16 +90,6 @@ double PrintedForceLaw::slope(double F_m) const noexcept {
     return alpha_1_ * delta_1_ * lorentzian(delta_1_ * F_m) +
            alpha_2_ * delta_2_ *
                (lorentzian(delta_2_ * (F_m - F_0_)) + lorentzian(delta_2_ * (F_m + F_0_)));
-}
-
-double PrintedForceLaw::inverse(double F_h) const noexcept {
-    if (F_h == 0 || std::isnan(F_h)) return F_h;
-    const double magnitude = std::abs(F_h);
-    if (magnitude >= F_h2_) return std::copysign(infinity, F_h);
-    const auto excess = [&](double F_m) {
-        return ValueAndSlope{value(F_m) - magnitude, slope(F_m)};
-    };
-    return std::copysign(increasing_root(excess, magnitude / slope(0), 0), F_h);
 }
 
 PerceptualForceLaw::PerceptualForceLaw(const Parameters& p) noexcept
@@ -154,22 +143,6 @@ double PerceptualForceLaw::slope(double F_m) const noexcept {
     return exponent * value(F) / F;
 }
 
-double PerceptualForceLaw::inverse(double F_h) const noexcept {
-    const double magnitude = std::abs(F_h);
-    if (magnitude >= F_h_limit_) return std::copysign(infinity, F_h);
-    if (magnitude >= F_h_hi_) {
-        const double above = magnitude - F_h_hi_, room = F_h_limit_ - F_h_hi_;
-        return std::copysign(F_hi_ + above * room / (slope_at_hi_ * (F_h_limit_ - magnitude)), F_h);
-    }
-    const double y = repeatable::log(magnitude / F_h_lo_);
-    if (!(y > -joint)) return F_h * F_lo_ / F_h_lo_;
-    if (y >= exponent_ * joint) return std::copysign(F_lo_ * repeatable::exp(y / exponent_), F_h);
-    // The parabola: y + joint = z - c z², z = x + joint.
-    const double c = (1 - exponent_) / (4 * joint), from_start = y + joint;
-    const double z = 2 * from_start / (1 + std::sqrt(1 - 4 * c * from_start));
-    return std::copysign(F_lo_ * repeatable::exp(z - joint), F_h);
-}
-
 double hand_force(const ForceLaw& law, double F_m) noexcept {
     return std::visit([F_m](const auto& l) { return l.value(F_m); }, law);
 }
@@ -182,10 +155,6 @@ Vec3 hand_force(const ForceLaw& law, const Vec3& force_newton) noexcept {
 
 double hand_force_slope(const ForceLaw& law, double F_m) noexcept {
     return std::visit([F_m](const auto& l) { return l.slope(F_m); }, law);
-}
-
-double hand_force_inverse(const ForceLaw& law, double F_h) noexcept {
-    return std::visit([F_h](const auto& l) { return l.inverse(F_h); }, law);
 }
 
 double force_gain(const ForceLaw& law, double F_m) noexcept {
@@ -210,9 +179,7 @@ double largest_felt(const ForceLaw& law, const Vec3& force_newton, const Mat3& s
 
 double largest_felt(const Mat3& felt) noexcept {
     if (!felt.allFinite()) return infinity;
-    const Mat3 symmetric = 0.5 * (felt + felt.transpose());
-    const Eigen::SelfAdjointEigenSolver<Mat3> solver(symmetric, Eigen::EigenvaluesOnly);
-    return std::max(0.0, solver.eigenvalues().maxCoeff());
+    return std::max(0.0, find_eigenvalues(0.5 * (felt + felt.transpose())).maxCoeff());
 }
 
 PrintedDisplacementLaw::PrintedDisplacementLaw(const Parameters& p) noexcept
@@ -227,17 +194,6 @@ double PrintedDisplacementLaw::value(double F_m, double /*stiffness*/) const noe
     return A_dmin_ + beta_ * (repeatable::atan((std::abs(F_m) - F_off_) * gamma_) - atan_at_0_);
 }
 
-double PrintedDisplacementLaw::slope(double F_m, double /*stiffness*/) const noexcept {
-    if (F_m == 0) return 0;
-    return std::copysign(beta_ * gamma_ * lorentzian((std::abs(F_m) - F_off_) * gamma_), F_m);
-}
-
-double PrintedDisplacementLaw::inverse(double A_d) const noexcept {
-    if (A_d <= A_dmin_) return 0;
-    if (A_d >= A_dmax_) return infinity;
-    return std::max(0.0, F_off_ + repeatable::tan((A_d - A_dmin_) / beta_ + atan_at_0_) / gamma_);
-}
-
 RepairedDisplacementLaw::RepairedDisplacementLaw(const Parameters& p) noexcept
     : printed_(p.printed), length_m_(p.length_m) {}
 
@@ -245,22 +201,8 @@ double RepairedDisplacementLaw::value(double F_m, double stiffness) const noexce
     return printed_.value(repeatable::hypot(F_m, length_m_ * stiffness));
 }
 
-double RepairedDisplacementLaw::slope(double F_m, double stiffness) const noexcept {
-    const double together = repeatable::hypot(F_m, length_m_ * stiffness);
-    return together == 0 ? 0 : printed_.slope(together) * (F_m / together);
-}
-
-double RepairedDisplacementLaw::inverse(double A_d, double stiffness) const noexcept {
-    const double together = printed_.inverse(A_d), share = length_m_ * std::abs(stiffness);
-    return together <= share ? 0 : std::sqrt(together - share) * std::sqrt(together + share);
-}
-
 double displacement_gain(const DisplacementLaw& law, double F_m, double stiffness) noexcept {
     return std::visit([=](const auto& l) { return l.value(F_m, stiffness); }, law);
-}
-
-double displacement_gain_slope(const DisplacementLaw& law, double F_m, double stiffness) noexcept {
-    return std::visit([=](const auto& l) { return l.slope(F_m, stiffness); }, law);
 }
 
 double capped_gain(double A_d, double felt, double K_cap) noexcept {

@@ -31,13 +31,11 @@ public:
 
     double value(double F_m) const noexcept;  // N
     double slope(double F_m) const noexcept;  // dF_h/dF_m
-    // F_m (N) for a hand force, exact within rounding of F_h; ±infinity from ±F_h2 on; NaN for NaN.
-    double inverse(double F_h) const noexcept;
 
 private:
     double alpha_1_, alpha_2_;  // N
     double delta_1_, delta_2_;  // 1/N
-    double F_0_, F_h2_;         // N
+    double F_0_;                // N
 };
 
 // F_h = gain F_m; a gain of 0 is the mode without force.
@@ -46,8 +44,6 @@ struct ConstantForceLaw {
 
     double value(double F_m) const noexcept { return gain * F_m; }
     double slope(double /*F_m*/) const noexcept { return gain; }
-    // With gain 0 no molecular force gives a hand force: ±infinity, but 0 for 0.
-    double inverse(double F_h) const noexcept { return F_h == 0 ? 0 : F_h / gain; }
 };
 
 // Equally many noticeable steps for each decade of F_m. A just noticeable step is 9 % of the force,
@@ -78,9 +74,8 @@ public:
     static PerceptualForceLaw for_range(double F_lo, double F_hi) noexcept;
     static constexpr double least_felt = 0.3, most_felt = 2.7;  // N
 
-    double value(double F_m) const noexcept;    // N
-    double slope(double F_m) const noexcept;    // dF_h/dF_m
-    double inverse(double F_h) const noexcept;  // N; ±infinity from ±F_h_limit on
+    double value(double F_m) const noexcept;  // N
+    double slope(double F_m) const noexcept;  // dF_h/dF_m
 
 private:
     double F_lo_, F_hi_;                  // N
@@ -96,8 +91,6 @@ double hand_force(const ForceLaw& law, double F_m) noexcept;
 double hand_force_slope(const ForceLaw& law, double F_m) noexcept;
 // In space the law acts on the norm of the force, along its direction. NaN stays NaN.
 Vec3 hand_force(const ForceLaw& law, const Vec3& force_newton) noexcept;
-// The molecular force (N) for this hand force; infinite if there is none.
-double hand_force_inverse(const ForceLaw& law, double F_h) noexcept;
 // The gain F_h/F_m at F_m; at F_m = 0 its limit, the slope.
 double force_gain(const ForceLaw& law, double F_m) noexcept;
 
@@ -124,10 +117,6 @@ public:
     explicit PrintedDisplacementLaw(const Parameters& parameters) noexcept;
 
     double value(double F_m, double stiffness = 0) const noexcept;
-    // dA_d/dF_m; the law has a kink at 0, where this is 0.
-    double slope(double F_m, double stiffness = 0) const noexcept;
-    // |F_m| (N) where the gain is A_d: 0 up to A_dmin, infinite from A_dmax on.
-    double inverse(double A_d) const noexcept;
 
 private:
     double A_dmin_, A_dmax_, beta_, gamma_, F_off_, atan_at_0_;
@@ -145,34 +134,25 @@ public:
     explicit RepairedDisplacementLaw(const Parameters& parameters) noexcept;
 
     double value(double F_m, double stiffness = 0) const noexcept;
-    // dA_d/dF_m at that stiffness; 0 at F_m = 0, where there is no kink unless the stiffness is 0.
-    double slope(double F_m, double stiffness = 0) const noexcept;
-    // |F_m| (N) where the gain is A_d at that stiffness: 0 where the gain is larger at all forces,
-    // infinite from A_dmax on.
-    double inverse(double A_d, double stiffness = 0) const noexcept;
 
 private:
     PrintedDisplacementLaw printed_;
     double length_m_;
 };
 
-// Constant; has no inverse.
+// Constant.
 struct ConstantDisplacementLaw {
     double gain = 0.25e9;
 
     double value(double /*F_m*/, double /*stiffness*/ = 0) const noexcept { return gain; }
-    double slope(double /*F_m*/, double /*stiffness*/ = 0) const noexcept { return 0; }
 };
 
 using DisplacementLaw =
     std::variant<PrintedDisplacementLaw, ConstantDisplacementLaw, RepairedDisplacementLaw>;
 
-// A_d, handle metres per molecule metre, where the molecular force is F_m (N), and dA_d/dF_m. In
-// space `stiffness` is the largest |eigenvalue| (N/m) of the molecular one; only the repaired law
-// looks at it.
+// A_d, handle metres per molecule metre, where the molecular force is F_m (N). In space `stiffness`
+// is the largest |eigenvalue| (N/m) of the molecular one; only the repaired law looks at it.
 double displacement_gain(const DisplacementLaw& law, double F_m, double stiffness = 0) noexcept;
-double displacement_gain_slope(const DisplacementLaw& law, double F_m,
-                               double stiffness = 0) noexcept;
 
 // A_d raised until the felt stiffness is K_cap (N/m, > 0) at most. `felt` is that stiffness times
 // A_d: slope times stiffness along a line, largest_felt() in space.

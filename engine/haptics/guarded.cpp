@@ -3,8 +3,8 @@
 #include "core/repeatable.h"
 #include "core/units.h"
 #include "haptics/device.h"
+#include "math/eigenvectors.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -156,9 +156,8 @@ Vec3 follow(const GuardedSettings& settings, const Surroundings& around, const V
 
 // `felt`: Jacobian times stiffness, N/m times A_d.
 GuardedGain tensor_gain(double law, const Mat3& felt, double cap_N_per_m) noexcept {
-    const Eigen::SelfAdjointEigenSolver<Mat3> solver(0.5 * (felt + felt.transpose()));
-    const Mat3& axes = solver.eigenvectors();
-    Vec3 A_d = (solver.eigenvalues() / cap_N_per_m).cwiseMax(law);
+    const auto [values, axes] = find_eigenvectors(Mat3(0.5 * (felt + felt.transpose())));
+    Vec3 A_d = (values / cap_N_per_m).cwiseMax(law);
     const Mat3 inverse = axes * A_d.cwiseInverse().asDiagonal() * axes.transpose();
     // What is not symmetric of it adds to the stiffness once the axes differ.
     const double cap_ratio = std::max(1.0, largest_felt(felt * inverse) / cap_N_per_m);

@@ -138,11 +138,6 @@ double ChargeModel::flow(const std::string& to, const std::string& from) const {
     return chi(from) - chi(to) + (to == low ? pair : -pair);
 }
 
-bool ChargeModel::has_bond(const std::string& a, const std::string& b) const {
-    const auto [low, high] = std::minmax(a, b);
-    return low == high ? chi_.contains(a) : extra_.contains({low, high});
-}
-
 double ChargeModel::by_bonds(const MoleculeGraph& graph, const Perceived& seen,
                              const std::vector<std::string>& types, std::uint32_t atom) const {
     double charge = seen.charge[atom];

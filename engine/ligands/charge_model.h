@@ -29,9 +29,6 @@ public:
                                    const std::vector<EnvironmentKeys>& keys,
                                    const std::vector<std::string>& types) const;
 
-    // Whether residues have a bond between these types.
-    bool has_bond(const std::string& a, const std::string& b) const;
-
 private:
     double flow(const std::string& to, const std::string& from) const;
     double by_bonds(const MoleculeGraph& graph, const Perceived& seen,

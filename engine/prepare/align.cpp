@@ -1,10 +1,10 @@
 #include "prepare/align.h"
 
 #include "core/load_error.h"
+#include "math/eigenvectors.h"
 #include "prepare/residues.h"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -44,7 +44,7 @@ Mat3 axes_of(const Structure& structure, std::span<const Vec3> positions,
         if (structure.names[i].segment != segment || !is_heavy(structure, i)) continue;
         spread += (positions[i] - middle) * (positions[i] - middle).transpose();
     }
-    return Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors();
+    return find_eigenvectors(spread).vectors;
 }
 
 // From the first of the other segments to the last; nothing where there is only one.

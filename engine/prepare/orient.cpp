@@ -3,6 +3,7 @@
 #include "core/assertion.h"
 #include "field/pair_field.h"
 #include "forces/torsion.h"
+#include "math/eigenvectors.h"
 #include "molecule/point_grid.h"
 #include "prepare/bond_graph.h"
 #include "prepare/turning_groups.h"
@@ -39,7 +40,7 @@ std::vector<Quaternion> make_rotations() {
         const double z = 1 - (2.0 * i + 1) / directions, around = i * pi * (3 - std::sqrt(5.0));
         const double radius = std::sqrt(1 - z * z);
         const Vec3 direction(radius * std::cos(around), radius * std::sin(around), z);
-        const Quaternion to_direction = Quaternion::FromTwoVectors(Vec3::UnitZ(), direction);
+        const Quaternion to_direction = turn_between(Vec3::UnitZ(), direction);
         for (int j = 0; j < turns; ++j) {
             rotations.push_back(to_direction *
                                 Eigen::AngleAxisd(2 * pi * j / turns, Vec3::UnitZ()));

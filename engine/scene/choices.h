@@ -33,9 +33,9 @@ enum class PairPrecision { Double, Fast };
 inline constexpr std::array<std::string_view, 2> pair_precision_names{"double", "fast"};
 
 // What counts where active joints are chosen.
-enum class JointWeights { Acceleration, Inertia, PerJoint, InverseMovedAtoms, HandProximity };
-inline constexpr std::array<std::string_view, 5> joint_weight_names{
-    "acceleration", "inertia", "per-joint", "inverse-moved-atoms", "hand-proximity"};
+enum class JointWeights { Acceleration, PerJoint, HandProximity };
+inline constexpr std::array<std::string_view, 3> joint_weight_names{"acceleration", "per-joint",
+                                                                    "hand-proximity"};
 
 enum class Stroke { Hold, InOut, Path, Lead };
 inline constexpr std::array<std::string_view, 4> stroke_names{"hold", "in-out", "path", "lead"};

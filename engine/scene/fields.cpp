@@ -522,9 +522,7 @@ private:
 }  // namespace
 
 void visit_scene(FieldVisitor& v, SceneDescription& scene) {
-    v.text({.key = "format",
-            .meaning = "version of the scene format, \"2.0\"; unset: names of format 1 are read "
-                       "too (scenes/writing.md)"},
+    v.text({.key = "format", .meaning = "version of the scene format, \"2.0\" unless given"},
            scene.format);
     v.text({.key = "title", .meaning = "name of the scene"}, scene.title);
     v.text({.key = "about", .meaning = "description in a few sentences"}, scene.about);

@@ -49,9 +49,8 @@ void visit_statics(FieldVisitor& v, StaticsDescription& s) {
         {.key = "method",
          .meaning =
              "second-order: everything follows the hand by second derivatives of the energy, exact "
-             "near the hand; quasi-static: the paper's step with few or all joints; "
-             "limited-memory, inverse-mass: an L-BFGS minimiser with independent joints, or with "
-             "joints coupled by the mass matrix. Unset: second-order, but quasi-static with "
+             "near the hand; quasi-static: the paper's step with few or all joints. Unset: "
+             "second-order, but quasi-static with "
              "`active` below all, with `budget_us`, or with more than 3,000 degrees of freedom"},
         relax_method_names, s.method);
     v.integer({.key = "steps",
@@ -118,9 +117,9 @@ void visit_statics(FieldVisitor& v, StaticsDescription& s) {
     choose(v,
            {.key = "weights",
             .meaning = "weight in the selection of active joints: acceleration of regions, as in "
-                       "the paper; inertia: also the inertia that they move; per-joint: joints "
-                       "individually; inverse-moved-atoms: favours joints that move few atoms; "
-                       "hand-proximity: favours joints near the hand"},
+                       "the paper; per-joint: joints individually, also by the inertia that they "
+                       "move; hand-proximity: also favours joints near the hand and such that "
+                       "move few atoms"},
            joint_weight_names, s.weights);
     v.integer({.key = "choose_every",
                .meaning = "steps from one selection to the next",
@@ -129,8 +128,7 @@ void visit_statics(FieldVisitor& v, StaticsDescription& s) {
               s.choose_every);
     v.real({.key = "rest_kcal_per_mol",
             .meaning = "on loading the scene is relaxed until the rms force along the coordinates "
-                       "(per radian and per Å) is below this; limited-memory and inverse-mass use "
-                       "the same limit in a step",
+                       "(per radian and per Å) is below this",
             .lowest = 1e-6,
             .highest = 1e6},
            s.rest_kcal_per_mol);

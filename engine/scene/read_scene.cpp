@@ -9,7 +9,6 @@
 #include "scene/fields.h"
 #include "scene/find_scene.h"
 #include "scene/problems.h"
-#include "scene/renames.h"
 #include "scene/run_commands.h"
 
 #include <fmt/format.h>
@@ -136,14 +135,10 @@ bool is_below(const fs::path& path, const fs::path& folder) {
 // What a file may have.
 struct ReadingRules {
     bool allows_outside = false;      // files from anywhere
-    bool takes_old_names = false;     // of format 1
     bool leaves_out_unknown = false;  // of a newer minor format
 };
 
-ReadingRules rules_of(FileVersion version) {
-    const bool is_older = version.major < scene_version.major;
-    return {false, is_older, version > scene_version};
-}
+ReadingRules rules_of(FileVersion version) { return {false, version > scene_version}; }
 
 // Fills a description from a table.
 class Reader final : public FieldVisitor {
@@ -379,12 +374,6 @@ public:
         std::string read = node->is_string()    ? node->ref<std::string>()
                            : node->is_integer() ? fmt::format("{}", node->ref<std::int64_t>())
                                                 : "";
-        if (const std::string_view now = find_value_now(full_key(field.key), read); !now.empty()) {
-            renamed(place_of(node->source()),
-                    fmt::format("'{}': {} is now {}", full_key(field.key), read, now));
-            if (!rules_.takes_old_names) return;
-            read = now;
-        }
         const auto found = std::find(names.begin(), names.end(), read);
         if (found == names.end() && rules_.leaves_out_unknown) {
             return problems_.add_note(place_of(node->source()),
@@ -529,27 +518,9 @@ private:
         if (std::ranges::find(level.known, field.key) == level.known.end()) {
             level.known.emplace_back(field.key);
         }
-        const toml::node* node = level.table ? level.table->get(field.key) : nullptr;
-        if (!node && level.table) node = find_by_old_name(level, field.key);
+        const toml::node* const node = level.table ? level.table->get(field.key) : nullptr;
         if (node) problems_.set_place(full_key(field.key), place_of(node->source()));
         return node;
-    }
-
-    const toml::node* find_by_old_name(Level& level, std::string_view key) {
-        const std::string_view before = find_key_before(level.path, key);
-        const auto found = before.empty() ? level.table->end() : level.table->find(before);
-        if (found == level.table->end()) return nullptr;
-        if (std::ranges::find(level.known, before) == level.known.end()) {
-            level.known.emplace_back(before);
-            renamed(place_of(found->first.source()),
-                    fmt::format("'{}' is now '{}'", full_key(before), full_key(key)));
-        }
-        return rules_.takes_old_names ? &found->second : nullptr;
-    }
-
-    // A note where old names are read, else a problem.
-    void renamed(const TextPlace& place, std::string what) {
-        rules_.takes_old_names ? problems_.add_note(place, what) : problem(place, std::move(what));
     }
 
     // The node of a field that is no table; names a required one that is not there.
@@ -786,11 +757,11 @@ toml::table parse_table(std::string_view text, const fs::path& file) {
     }
 }
 
-// What the key `format` states, or that of files without a number. Throws LoadError for a version
-// that cannot be read; one of a newer minor number is a note.
+// What the key `format` states. Throws LoadError for a version that cannot be read; one of a newer
+// minor number is a note.
 FileVersion read_version(const toml::table& root, Problems& problems) {
     const toml::node* const node = root.get("format");
-    if (!node || !node->is_string()) return unnumbered_version;
+    if (!node || !node->is_string()) return scene_version;
     const TextPlace place = place_of(node->source());
     const std::optional<FileVersion> version = find_version(node->ref<std::string>());
     if (!version) {
@@ -869,14 +840,14 @@ CouplingDescription parse_settings(std::span<const std::string> settings) {
     return read_coupling({}, settings, [](const auto&, const auto&) {});
 }
 
-EditDescription parse_edit(std::string_view text, const TextPlace& place, FileVersion version) {
+EditDescription parse_edit(std::string_view text, const TextPlace& place) {
     SceneDescription scene;
     scene.second.emplace();
     try {
         const fs::path name = "edit";  // its lines count from its own start
         const toml::table root = parse_table(text, name);
         Problems problems({});
-        Reader reader(root, name, fs::path(place.file).parent_path(), rules_of(version), problems);
+        Reader reader(root, name, fs::path(place.file).parent_path(), {}, problems);
         visit_edits(reader, scene.edits);
         check_edits(scene, problems);
         reader.finish();

@@ -18,9 +18,8 @@ namespace palpa {
 // unknown key (with the near name), a wrong type, a value out of range or not finite, a field that
 // is missing, a named file that does not exist, and fields that contradict each other.
 //
-// The key `format` states the version of the file's format. Without it, or of format 1, names of
-// format 1 are read with a note; of a newer minor version what is not known is left out with a
-// note; one of a newer major version is refused.
+// The key `format` states the version of the file's format, the present one unless given. Of a
+// newer minor version what is not known is left out with a note; another major version is refused.
 //
 // A scene may come from anybody, so it may name only files below its own folder and below the
 // scenes that come with the program, wherever links lead. With `allow_outside` among the settings
@@ -44,8 +43,6 @@ CouplingDescription parse_settings(std::span<const std::string> settings);
 
 // One edit, of the text of one table [[edits]]. Files that it names are taken from the folder of
 // the file that it stands in, below which they must be, as a scene's. Throws LoadError at `place`.
-// `version`: of the scene format, whose names it has.
-EditDescription parse_edit(std::string_view text, const TextPlace& place,
-                           FileVersion version = scene_version);
+EditDescription parse_edit(std::string_view text, const TextPlace& place);
 
 }  // namespace palpa

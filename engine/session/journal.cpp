@@ -352,9 +352,7 @@ private:
         } else if (json.contains("pull")) {
             event.command = read_pull(json);
         } else {
-            const FileVersion names =
-                journal_.version.major < journal_version.major ? unnumbered_version : scene_version;
-            event.command = parse_edit(read<std::string>(json, "edit"), place_, names);
+            event.command = parse_edit(read<std::string>(json, "edit"), place_);
         }
         return event;
     }

@@ -60,9 +60,8 @@ struct Journal {
     }
 };
 
-// Throws LoadError with the line for whatever is not as above, and for a newer major version. Of
-// version 1, edits have the names of scene format 1. What is behind the last whole line
-// of one that was cut off does not count.
+// Throws LoadError with the line for whatever is not as above, and for another major version. What
+// is behind the last whole line of one that was cut off does not count.
 Journal parse_journal(std::string_view text, const std::string& file);
 
 // Gives devices of a journal before version 2.1 the scene's viscosity, from which the stiffness cap

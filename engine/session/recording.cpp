@@ -313,7 +313,7 @@ bool has_journal(const fs::path& folder) {
 
 FileVersion read_recording_version(const fs::path& folder) {
     const fs::path session = folder / "session.toml";
-    if (!is_there(session)) return unnumbered_version;
+    if (!is_there(session)) return {1, 0};
     const std::string text = read_text_file(session);
     std::size_t number = 0;
     for (const std::string_view line : split_lines(text)) {
@@ -325,7 +325,7 @@ FileVersion read_recording_version(const fs::path& folder) {
                         fmt::format("'{}' is not the number of a recording's format; expected {}",
                                     printable(stated.substr(0, 40)), to_string(recording_version)));
     }
-    return unnumbered_version;
+    return {1, 0};  // those of before did not state it
 }
 
 std::string read_recorded_kernels(const fs::path& folder) {
@@ -423,7 +423,6 @@ void make_room(const fs::path& folder, const std::map<fs::path, std::string>& na
         fs::remove(folder / name, error);  // if empty
 }
 
-// Readers know it by older names, which stay beside the newer ones.
 nlohmann::ordered_json accuracy_as_json(const AccuracyReport& report) {
     nlohmann::ordered_json json;
     if (report.range_pN) {
@@ -432,13 +431,10 @@ nlohmann::ordered_json accuracy_as_json(const AccuracyReport& report) {
     }
     json["stiffest_share_of_cap"] = report.stiffest_share;
     json["largest_cap_ratio"] = report.largest_cap_ratio;
-    json["largest_raise_of_A_d"] = report.largest_cap_ratio;
     json["thermal_limit_share"] = report.thermal_share;
-    json["warm_share"] = report.thermal_share;
     if (report.within_pN) {
         json["within_pN"] = *report.within_pN;
         json["error_estimates"] = report.estimates;
-        json["audits"] = report.estimates;
         for (const auto& [key, value] : {std::pair{"error_median_pN", report.median_pN},
                                          {"error_90_pN", report.ninety_pN},
                                          {"within_share", report.within_share}})
@@ -447,7 +443,6 @@ nlohmann::ordered_json accuracy_as_json(const AccuracyReport& report) {
         json["steps_mean"] = report.steps;
     }
     json["not_met"] = find_unmet(report).all();
-    json["gave_way"] = json["not_met"];
     return json;
 }
 

@@ -34,7 +34,7 @@ std::string trace_header(std::size_t hands = 1, bool relaxes = false);
 std::string trace_row(std::span<const ServoTick> ticks, bool relaxes = false);
 inline std::string trace_row(const ServoTick& tick) { return trace_row({&tick, 1}); }
 
-// The summary as a JSON object. Scripts rely on its keys, which tools/README.md lists.
+// The summary as a JSON object. Scripts rely on its keys, which tools/recordings.md lists.
 std::string format_summary(const SceneDescription& scene, const Summary& summary);
 
 // Throws LoadError if a Recording in this folder would, so that a long computation is not started

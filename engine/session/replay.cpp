@@ -25,12 +25,10 @@ std::vector<std::string_view> split_row(std::string_view row) {
     return values;
 }
 
-// Columns that recordings of version 1 may lack, by how their names begin.
+// Columns that recordings of version 2.0 lack, by how their names begin.
 bool came_later(std::string_view column) {
-    constexpr std::array<std::string_view, 9> later{
-        "torque_",    "handle_turn_", "molecule_turn_", "force_error_estimate_",
-        "model_age_", "cap_N_per_m",  "waiting_m",      "clipped_m",
-        "at_stop"};
+    constexpr std::array<std::string_view, 4> later{"cap_N_per_m", "waiting_m", "clipped_m",
+                                                    "at_stop"};
     return std::ranges::any_of(
         later, [&](std::string_view beginning) { return column.starts_with(beginning); });
 }

@@ -2,7 +2,7 @@
 
 #include "assembly/region_bodies.h"
 #include "charmm/build_topology.h"
-#include "charmm/cut_sphere.h"
+#include "charmm/cut_topology.h"
 #include "charmm/generate.h"
 #include "core/text.h"
 #include "core/units.h"
@@ -329,9 +329,10 @@ AdaptiveSettings build_adaptive_settings(const StaticsDescription& s,
     settings.step = step;
     settings.limits.degrees_of_freedom = static_cast<std::size_t>(s.active);
     settings.choose_every = static_cast<std::size_t>(s.choose_every);
-    if (s.weights != JointWeights::Acceleration) settings.weight = MetricWeight::Inertia;
-    if (s.weights != JointWeights::Acceleration && s.weights != JointWeights::Inertia)
+    if (s.weights != JointWeights::Acceleration) {
+        settings.weight = MetricWeight::Inertia;
         settings.limits.shape = SelectionShape::Single;
+    }
     return settings;
 }
 
@@ -356,9 +357,8 @@ AdaptiveState build_adaptive(const SceneDescription& scene, const RelaxSettings&
     AdaptiveState adaptive;
     adaptive.settings = build_adaptive_settings(scene.statics, settings.step);
     adaptive.statics = build_adaptive_statics(model);
-    const JointWeights weights = scene.statics.weights;
-    adaptive.weighs_hand_proximity = weights == JointWeights::HandProximity;
-    if (weights == JointWeights::InverseMovedAtoms || weights == JointWeights::HandProximity) {
+    adaptive.weighs_hand_proximity = scene.statics.weights == JointWeights::HandProximity;
+    if (adaptive.weighs_hand_proximity) {
         adaptive.mobility_weights = find_mobility_weights(model);
         // What is in the hand weighs nothing.
         for (const HeldPart& part : held)

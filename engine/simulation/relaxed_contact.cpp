@@ -1,10 +1,10 @@
 #include "simulation/relaxed_contact.h"
 
 #include "core/units.h"
+#include "math/eigenvectors.h"
 #include "simulation/held.h"
 #include "simulation/resources.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cstddef>
 
@@ -85,9 +85,9 @@ double find_age(const SecondOrder& second, const HandColumns& columns) {
 
 template <typename F>
 Mat6 with_eigenvalues(const Mat6& matrix, F&& changed) {
-    const Eigen::SelfAdjointEigenSolver<Mat6> solver(matrix);
-    const Vec6 values = solver.eigenvalues().unaryExpr(changed);
-    return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
+    const Eigenvectors<6> own = find_eigenvectors(matrix);
+    const Vec6 values = own.values.unaryExpr(changed);
+    return own.vectors * values.asDiagonal() * own.vectors.transpose();
 }
 
 }  // namespace
@@ -169,10 +169,10 @@ std::optional<FollowingAtoms> find_following(const World& world, Entity hand,
 Mat6 bound_stiffness(const Mat6& relaxed, const Mat6& frozen, double softest) {
     constexpr double least = 1e-6;  // of `softest`, where the frozen one is below the bound itself
     const Mat6 lift = softest * Mat6::Identity();
-    const Eigen::SelfAdjointEigenSolver<Mat6> upper(frozen + lift);
-    const Vec6 roots = upper.eigenvalues().cwiseMax(least * softest).cwiseSqrt();
-    const Mat6 back = upper.eigenvectors() * roots.asDiagonal();
-    const Mat6 there = upper.eigenvectors() * roots.cwiseInverse().asDiagonal();
+    const Eigenvectors<6> upper = find_eigenvectors(Mat6(frozen + lift));
+    const Vec6 roots = upper.values.cwiseMax(least * softest).cwiseSqrt();
+    const Mat6 back = upper.vectors * roots.asDiagonal();
+    const Mat6 there = upper.vectors * roots.cwiseInverse().asDiagonal();
     const Mat6 share = with_eigenvalues(there.transpose() * (relaxed + lift) * there,
                                         [](double x) { return std::clamp(x, 0.0, 1.0); });
     return back * share * back.transpose() - lift;

@@ -9,54 +9,6 @@
 namespace palpa {
 namespace {
 
-// How much each coordinate yields alone: the inverse of the sum of squared lever arms of the atoms
-// that it moves, as if each atom were held by a spring of 1 kcal/mol/Å^2.
-Coordinates find_compliance(const TorsionModel& model, const TorsionState& state) {
-    // Of the atoms behind each joint, how many there are, where they are, and their squares.
-    struct Moments {
-        double count = 0;
-        Vec3 sum = Vec3::Zero();
-        Mat3 squares = Mat3::Zero();
-    };
-    const std::vector<Body>& bodies = model.tree.bodies.bodies;
-    std::vector<Moments> moments(bodies.size());
-    for (std::size_t i = 0; i < state.positions.size(); ++i) {
-        Moments& own = moments[model.tree.bodies.body_of[i]];
-        const Vec3& x = state.positions[i];
-        own.count += 1;
-        own.sum += x;
-        own.squares += x * x.transpose();
-    }
-    const auto about = [](const Moments& m, const Vec3& point) -> Mat3 {
-        const Mat3 s = m.squares - m.sum * point.transpose() - point * m.sum.transpose() +
-                       m.count * point * point.transpose();
-        return s.trace() * Mat3::Identity() - s;
-    };
-    Coordinates compliance(model.coordinates);
-    for (std::size_t b = bodies.size(); b-- > 0;) {
-        const Moments& own = moments[b];
-        if (model.tree.bodies.is_base(b)) {
-            const std::uint32_t molecule = model.tree.molecule_of[b];
-            const Eigen::Index at = model.coordinate_of_base[molecule];
-            if (at < 0) continue;
-            compliance.segment<3>(at) =
-                about(own, state.pivots[molecule]).diagonal().cwiseMax(1).cwiseInverse();
-            if (model.bases[molecule].freedom == BaseFreedom::Free)
-                compliance.segment<3>(at + 3).setConstant(1 / own.count);
-            continue;
-        }
-        const auto [j, k] = bodies[b].axis;
-        const Vec3 axis = (state.positions[k] - state.positions[j]).normalized();
-        const double arms = axis.dot(about(own, state.positions[k]) * axis);
-        compliance[model.coordinate_of_body[b]] = 1 / std::max(arms, 1.0);
-        Moments& parent = moments[bodies[b].parent];
-        parent.count += own.count;
-        parent.sum += own.sum;
-        parent.squares += own.squares;
-    }
-    return compliance;
-}
-
 // The energy over the coordinates, from where the state is.
 class Descent {
 public:
@@ -70,9 +22,6 @@ public:
 
     Coordinates precondition(const Coordinates& forces) {
         if (settings_.precondition) return settings_.precondition(forces);
-        if (settings_.method == RelaxMethod::LimitedMemory) {
-            return compliance_.array() * forces.array();
-        }
         Coordinates accelerations;
         multiply_by_inverse_mass(model_, state_, forces, statics_.assembly, accelerations);
         return accelerations;
@@ -106,19 +55,14 @@ public:
     void accept() { take_over(statics_.trial, state_); }
 
     // Whether there was a step that is accepted.
-    bool step() {
-        if (settings_.method == RelaxMethod::LimitedMemory && !settings_.precondition) {
-            compliance_ = find_compliance(model_, state_);
-        }
-        return step_downhill(*this, statics_.pairs);
-    }
+    bool step() { return step_downhill(*this, statics_.pairs); }
 
 private:
     const TorsionModel& model_;
     const RelaxSettings& settings_;
     TorsionState& state_;
     QuasiStatics& statics_;
-    Coordinates compliance_, move_;
+    Coordinates move_;
 };
 
 }  // namespace

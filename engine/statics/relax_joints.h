@@ -13,15 +13,15 @@ namespace palpa {
 double rms_of(const Coordinates& values) noexcept;
 
 struct RelaxSettings {
-    RelaxMethod method = RelaxMethod::InverseMass;
-    QuasiStaticSettings step;   // force settings for all methods; the rest for QuasiStatic
-    double largest_move = 0.3;  // largest move of an atom in a step of the other methods, Å
+    RelaxMethod method = RelaxMethod::SecondOrder;  // L-BFGS over the mass matrix
+    QuasiStaticSettings step;   // force settings for both methods; the rest for QuasiStatic
+    double largest_move = 0.3;  // largest move of an atom in a step of L-BFGS, Å
     double force_tolerance =
         0.01;                  // tolerance: rms over the coordinates, kcal/mol/rad and kcal/mol/Å
     std::size_t steps = 2000;  // largest number of steps
     bool keeps_pairs = false;  // curvature pairs of the previous call are still valid
     // Multiplies forces along the coordinates by an approximate inverse Hessian of the caller;
-    // empty: the method's own.
+    // empty: by the inverse mass matrix.
     std::function<Coordinates(const Coordinates&)> precondition = {};
 };
 

@@ -1,6 +1,6 @@
 #include "statics/response_span.h"
+#include "math/eigenvectors.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -85,13 +85,12 @@ struct Responses {
 Eigen::MatrixXd find_combinations(const Eigen::MatrixXd& products, Eigen::Index most) {
     if (products.size() == 0) return products;
     constexpr double least = 1e-9;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> own(products);
-    const Eigen::VectorXd& values = own.eigenvalues();
+    const Eigenvectors<Eigen::Dynamic> own = find_eigenvectors(products);
+    const Eigen::VectorXd& values = own.values;
     const double bound = least * std::max(values[values.size() - 1], 0.0);
     const auto kept = std::min<Eigen::Index>(
         most, std::ranges::count_if(values, [&](double value) { return value > bound; }));
-    return own.eigenvectors().rightCols(kept) *
-           values.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
+    return own.vectors.rightCols(kept) * values.tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
 }  // namespace

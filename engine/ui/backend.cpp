@@ -114,8 +114,6 @@ void UiBackend::draw(VkCommandBuffer commands) {
     ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands);
 }
 
-bool UiBackend::wants_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
-
 bool UiBackend::covers(double x, double y) const {
     const ImVec2 place{static_cast<float>(x), static_cast<float>(y)};
     for (const ImGuiWindow* const window : ImGui::GetCurrentContext()->Windows) {

@@ -104,8 +104,6 @@ std::string in_language(std::string_view literal) { return translated(literal.da
 
 std::span<const Shortcut> shortcuts() noexcept { return list; }
 
-std::span<const Gesture> gestures() noexcept { return gesture_list; }
-
 std::optional<Action> find_action(Key key, bool control, bool shift) noexcept {
     std::optional<Action> found;
     for (const Shortcut& shortcut : list) {

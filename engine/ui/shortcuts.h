@@ -74,7 +74,6 @@ std::span<const Shortcut> shortcuts() noexcept;
 struct Gesture {
     std::string_view name, does;
 };
-std::span<const Gesture> gestures() noexcept;
 
 std::optional<Action> find_action(Key key, bool control, bool shift = false) noexcept;
 

@@ -126,11 +126,6 @@ void frame_shapes(OrbitCamera& camera, std::span<const SphereShape> shapes, cons
     }
 }
 
-void focus(OrbitCamera& camera, const glm::vec3& place, float distance) {
-    camera.target = place;
-    camera.distance = distance;
-}
-
 FrameCamera frame_camera(const OrbitCamera& camera, const FrameScene& frame) {
     FrameCamera made;
     const glm::vec3 back = backward(camera);

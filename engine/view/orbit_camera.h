@@ -61,8 +61,6 @@ struct Room {
 // nothing changes.
 void frame_all(OrbitCamera& camera, const FrameScene& frame, const Room& room);
 void frame_shapes(OrbitCamera& camera, std::span<const SphereShape> shapes, const Room& room);
-// Looks at one point from near.
-void focus(OrbitCamera& camera, const glm::vec3& place, float distance);
 
 // The camera of a frame, with clip planes in front of and behind all shapes, and fog behind the
 // target.

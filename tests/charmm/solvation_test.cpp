@@ -1,5 +1,5 @@
 #include "charmm/assign_solvation.h"
-#include "charmm/cut_sphere.h"
+#include "charmm/cut_topology.h"
 #include "charmm/solvation_reader.h"
 #include "core/files.h"
 #include "core/text.h"

@@ -109,47 +109,38 @@ TEST_CASE("eq. 2 is odd to the last bit, monotone, and stays under F_h2", "[hapt
     }
 }
 
-TEST_CASE("the slopes of both laws are their derivatives", "[haptics][gains]") {
+TEST_CASE("the slope of eq. 2 is its derivative", "[haptics][gains]") {
     const PrintedForceLaw force({});
-    const PrintedDisplacementLaw displacement({});
     for (double F = -6.0137 * nN; F < 6 * nN; F += 0.0611 * nN) {
         INFO("F = " << F);
         const double h = 1e-14;
         CHECK_THAT((force.value(F + h) - force.value(F - h)) / (2 * h),
                    WithinRel(force.slope(F), 1e-6));
     }
-    for (const double F : {1 * pN, 5 * pN, 15 * pN, 19 * pN, 20 * pN, 21 * pN, 30 * pN, 100 * pN}) {
-        INFO("F = " << F);
-        const double h = 1e-16;
-        const double slope = (displacement.value(F + h) - displacement.value(F - h)) / (2 * h);
-        CHECK_THAT(slope, WithinRel(displacement.slope(F), 1e-6));
-    }
 }
 
-TEST_CASE("eq. 3 gives the paper's displacement gain and its slope", "[haptics][gains]") {
+TEST_CASE("eq. 3 gives the paper's displacement gain", "[haptics][gains]") {
     const PrintedDisplacementLaw law({});
-    const auto [F_m, A_d, slope] = GENERATE(table<double, double, double>({
-        {1 * pN, 5207994.572, 2.189119164e17},
-        {5 * pN, 6316259.568, 3.506465209e17},
-        {10 * pN, 8939344.661, 7.846149874e17},
-        {15 * pN, 16683822.28, 3.047927451e18},
-        {19 * pN, 63280743.47, 3.962305686e19},
-        {20 * pN, 125520495.6, 7.924611373e19},
-        {21 * pN, 187760247.8, 3.962305686e19},
-        {25 * pN, 234357169, 3.047927451e18},
-        {30 * pN, 242101646.6, 7.846149874e17},
-        {50 * pN, 247359440.6, 8.795351135e16},
-        {100 * pN, 249009475.2, 1.238027085e16},
-        {350 * pN, 249759861, 7.276894953e14},
-        {1000 * pN, 249919136.6, 8.251356853e13},
-        {3000 * pN, 249973407.3, 8.923708932e12},
+    const auto [F_m, A_d] = GENERATE(table<double, double>({
+        {1 * pN, 5207994.572},
+        {5 * pN, 6316259.568},
+        {10 * pN, 8939344.661},
+        {15 * pN, 16683822.28},
+        {19 * pN, 63280743.47},
+        {20 * pN, 125520495.6},
+        {21 * pN, 187760247.8},
+        {25 * pN, 234357169},
+        {30 * pN, 242101646.6},
+        {50 * pN, 247359440.6},
+        {100 * pN, 249009475.2},
+        {350 * pN, 249759861},
+        {1000 * pN, 249919136.6},
+        {3000 * pN, 249973407.3},
     }));
     INFO("F_m = " << F_m);
 
     CHECK_THAT(law.value(F_m), WithinRel(A_d, nine_digits));
-    CHECK_THAT(law.slope(F_m), WithinRel(slope, nine_digits));
     CHECK(law.value(-F_m) == law.value(F_m));
-    CHECK(law.slope(-F_m) == -law.slope(F_m));
 }
 
 TEST_CASE("A_d is exactly A_dmin without force and A_dmax in the limit", "[haptics][gains]") {
@@ -157,10 +148,6 @@ TEST_CASE("A_d is exactly A_dmin without force and A_dmax in the limit", "[hapti
 
     CHECK(law.value(0) == 0.005e9);
     CHECK_THAT(law.value(1e300), WithinRel(0.25e9, 1e-14));
-    // dA_d/d|F| = β γ / (1 + (F_off γ)²) on both sides of the kink at 0: 1.9762e17 per newton.
-    CHECK_THAT(law.slope(1e-20), WithinRel(1.9762e17, 1e-4));
-    CHECK_THAT(law.slope(-1e-20), WithinRel(-1.9762e17, 1e-4));
-    CHECK(law.slope(0) == 0);
 }
 
 TEST_CASE("A_d passes from low to high around F_off", "[haptics][gains]") {
@@ -347,7 +334,6 @@ TEST_CASE("whatever range must be felt is, and below the clamp", "[haptics][gain
             if (F < F_hi)
                 REQUIRE_THAT((law.value(F + h) - law.value(F - h)) / (2 * h),
                              WithinRel(law.slope(F), 1e-5));
-            REQUIRE_THAT(law.inverse(law.value(F)), WithinRel(F, 1e-8));
             REQUIRE(law.value(-F) == -law.value(F));
             before = law.value(F);
         }
@@ -370,54 +356,6 @@ TEST_CASE("force laws are odd and monotone, and slopes are their derivatives", "
         if (std::abs(F) > 10 * nN) continue;
         REQUIRE_THAT((after - before) / (2 * h), WithinRel(hand_force_slope(law, F), 1e-6));
     }
-}
-
-TEST_CASE("the inverse of a force law gives back the molecular force", "[haptics][gains]") {
-    const auto law = GENERATE(from_range(force_laws()));
-    INFO("law " << law.index());
-
-    for (const double F : forces_of_all_sizes()) {
-        INFO("F = " << F);
-        const double F_h = hand_force(law, F), back = hand_force_inverse(law, F_h);
-        // What one rounding of F_h means for F, where the law is flat.
-        const double rounding = 4e-16 * std::abs(F_h) / hand_force_slope(law, F);
-        REQUIRE_THAT(back, WithinAbs(F, 1e-12 * std::abs(F) + 4 * rounding));
-        REQUIRE(hand_force_inverse(law, -F_h) == -back);
-    }
-    CHECK(hand_force_inverse(law, 0) == 0);
-    CHECK(std::isnan(hand_force_inverse(law, std::numeric_limits<double>::quiet_NaN())));
-    CHECK(hand_force_inverse(law, infinity) == infinity);
-    // So near to 0 eq. 2 itself is all rounding.
-    CHECK(hand_force_inverse(law, 1e-200) > 0);
-    CHECK(hand_force_inverse(law, 1e-200) < 1e-205);
-}
-
-TEST_CASE("the inverse of eq. 2 holds where the law rises like a step", "[haptics][gains]") {
-    // Newton's way alone leaves the step at F_0 far on either side.
-    const double A_fmin = GENERATE(6.4e9, 64e9, 6.4e12);
-    const PrintedForceLaw::Parameters p{.A_fmin = A_fmin};
-    const PrintedForceLaw law(p);
-
-    for (const double share : {0.01, 0.5, 0.9, 0.99, 1.0, 1.01, 1.1, 2.0, 30.0}) {
-        INFO("F = " << share << " F_0");
-        const double F = share * p.F_0, F_h = law.value(F), back = law.inverse(F_h);
-        const double rounding = 4e-16 * F_h / law.slope(F);
-        CHECK_THAT(back, WithinAbs(F, 1e-12 * F + 4 * rounding));
-    }
-}
-
-TEST_CASE("beyond a law's limit the inverse is infinite", "[haptics][gains]") {
-    CHECK(PrintedForceLaw({}).inverse(3) == infinity);
-    CHECK(PrintedForceLaw({}).inverse(-3.5) == -infinity);
-    // Near F_h2 eq. 2 is F_h2 - (α1/δ1 + 2 α2/δ2)/F.
-    CHECK_THAT(PrintedForceLaw({}).inverse(2.999999), WithinRel(2.61250e-3, 1e-5));
-    CHECK(PrintedForceLaw({}).inverse(std::nextafter(3.0, 0)) > 1);
-    CHECK(PerceptualForceLaw({}).inverse(3.3) == infinity);
-    CHECK(PerceptualForceLaw({}).inverse(-4) == -infinity);
-    CHECK(PerceptualForceLaw({}).inverse(3.2999) < 1e-5);
-    CHECK(ConstantForceLaw{0}.inverse(0) == 0);
-    CHECK(ConstantForceLaw{0}.inverse(1e-9) == infinity);
-    CHECK(ConstantForceLaw{0}.inverse(-1e-9) == -infinity);
 }
 
 TEST_CASE("the Jacobian of a hand force in space is its derivative", "[haptics][gains]") {
@@ -522,49 +460,5 @@ TEST_CASE("the printed and the constant displacement law do not look at the stif
     const DisplacementLaw constant = ConstantDisplacementLaw{1e8};
 
     CHECK(displacement_gain(printed, 15 * pN, 29.3) == displacement_gain(printed, 15 * pN));
-    CHECK(displacement_gain_slope(printed, 15 * pN, 29.3) ==
-          displacement_gain_slope(printed, 15 * pN));
     CHECK(displacement_gain(constant, 15 * pN, 29.3) == 1e8);
-    CHECK(displacement_gain_slope(constant, 15 * pN, 29.3) == 0);
-}
-
-TEST_CASE("the slope of eq. 3 repaired is its derivative at that stiffness", "[haptics][gains]") {
-    const DisplacementLaw law = RepairedDisplacementLaw({});
-    const double stiffness = GENERATE(0., 0.04, 1., 3.9, 4.1, -5., 29.3);
-
-    for (const double F : {0.1 * pN, 5 * pN, 15 * pN, 19 * pN, 20 * pN, 25 * pN, 60 * pN}) {
-        INFO("F = " << F << ", k = " << stiffness);
-        const double h = 2e-5 * std::max(F, 5 * pN * std::abs(stiffness));
-        const double slope =
-            (displacement_gain(law, F + h, stiffness) - displacement_gain(law, F - h, stiffness)) /
-            (2 * h);
-        // The difference of two gains of 1e8 leaves 1e-8/h of noise.
-        const double noise = 1e-7 / h;
-        CHECK_THAT(slope, WithinAbs(displacement_gain_slope(law, F, stiffness),
-                                    1e-6 * std::abs(slope) + noise));
-        CHECK(displacement_gain_slope(law, -F, stiffness) ==
-              -displacement_gain_slope(law, F, stiffness));
-    }
-    CHECK(displacement_gain_slope(law, 0, stiffness) == 0);
-}
-
-TEST_CASE("the inverse of eq. 3 gives back the force", "[haptics][gains]") {
-    const PrintedDisplacementLaw printed({});
-    const RepairedDisplacementLaw repaired({});
-
-    for (const double F : {0.5 * pN, 5 * pN, 19 * pN, 20 * pN, 40 * pN, 300 * pN, 3000 * pN}) {
-        INFO("F = " << F);
-        // Its rounding where the gain is flat: 2e-8 or so of 0.25e9, over the slope.
-        const double rounding = 1e-7 / printed.slope(F);
-        CHECK_THAT(printed.inverse(printed.value(F)), WithinAbs(F, 1e-10 * F + rounding));
-        CHECK_THAT(repaired.inverse(repaired.value(F)), WithinAbs(F, 1e-10 * F + rounding));
-        CHECK_THAT(repaired.inverse(repaired.value(F, 2), 2),
-                   WithinAbs(F, 1e-10 * F + 1e-7 / repaired.slope(F, 2)));
-    }
-    CHECK(printed.inverse(0.005e9) == 0);
-    CHECK(printed.inverse(0) == 0);
-    CHECK(printed.inverse(0.25e9) == infinity);
-    CHECK(repaired.inverse(0.25e9, 3) == infinity);
-    CHECK(repaired.inverse(0.1e9, 29.3) == 0);
-    CHECK_THAT(printed.inverse(1.2552e8), WithinRel(20 * pN, 1e-4));
 }

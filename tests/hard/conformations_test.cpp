@@ -83,7 +83,6 @@ void step_to_rest(const TorsionModel& model, const test::WayOfStepping& way, Tor
 void minimise(const TorsionModel& model, const ForceSettings& forces, TorsionState state,
               Tally& tally) {
     RelaxSettings settings;
-    settings.method = RelaxMethod::LimitedMemory;
     settings.step.forces = forces;
     settings.steps = most_steps;
     settings.force_tolerance = at_rest;

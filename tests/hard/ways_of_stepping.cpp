@@ -250,8 +250,7 @@ void check_all_ways(const TorsionModel& model, const TorsionState& start, int st
     }
     for (const ForceSettings& forces : {ForceSettings{}, fast_forces()}) {
         INFO((forces.fast ? "fast pairs" : "pairs in double"));
-        for (const RelaxMethod method :
-             {RelaxMethod::QuasiStatic, RelaxMethod::LimitedMemory, RelaxMethod::InverseMass}) {
+        for (const RelaxMethod method : {RelaxMethod::QuasiStatic, RelaxMethod::SecondOrder}) {
             INFO("method " << static_cast<int>(method));
             check_relaxing(model, forces, method, start, static_cast<std::size_t>(steps));
         }

@@ -9,7 +9,7 @@ from pathlib import Path
 PROGRAM = os.environ["PALPA_LAB"]
 ROOT = Path(os.environ["PALPA_ROOT"])
 PEPTIDES = ROOT / "tests" / "data" / "two_peptides"
-WEIGHTS = "plain", "inertia", "single", "light", "near-hand"
+WEIGHTS = "plain", "single", "near-hand"
 
 
 def bench(*arguments):
@@ -82,7 +82,7 @@ class BenchAdaptive(unittest.TestCase):
         result = bench(PEPTIDES, "--adaptive", "--poses", 1, "--stroke-steps", 20, "--table")
         lines = [line for line in result.stdout.splitlines() if line.startswith("|")]
         self.assertEqual(len({line.count("|") for line in lines}), 1)
-        self.assertEqual(len(lines), 2 + 2 * 12)
+        self.assertEqual(len(lines), 2 + 2 * 8)
 
     def test_is_drawn(self):
         with tempfile.TemporaryDirectory() as folder:

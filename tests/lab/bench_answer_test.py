@@ -10,8 +10,7 @@ from pathlib import Path
 PROGRAM = os.environ["PALPA_LAB"]
 ROOT = Path(os.environ["PALPA_ROOT"])
 PEPTIDES = ROOT / "tests" / "data" / "two_peptides"
-ALL_PAIRS = ("default", "near=4", "near=6", "near=10", "responses=all", "responses=8",
-             "full-second-order", "bfgs", "paper-40", "paper-all")
+ALL_PAIRS = "default", "near=6", "full-second-order", "paper-40", "paper-all"
 CUTOFF = "near=6/cutoff=12", "paper-all/cutoff=12"
 
 

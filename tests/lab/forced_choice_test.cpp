@@ -35,8 +35,15 @@ ForceLaw law_of(CouplingMode mode) {
 // ln of the ratio at which the felt force is noticeably larger, and smaller: the mean of both.
 double predict_threshold(const ForceLaw& law) {
     const double felt = hand_force(law, strongest_newton), step = noticeable_newton(felt);
-    return 0.5 *
-           std::log(hand_force_inverse(law, felt + step) / hand_force_inverse(law, felt - step));
+    const auto force_that_feels_like = [&](double newton) {
+        double low = 0, high = 100 * strongest_newton;
+        while (high - low > 1e-12 * high) {
+            const double middle = 0.5 * (low + high);
+            (hand_force(law, middle) < newton ? low : high) = middle;
+        }
+        return low;
+    };
+    return 0.5 * std::log(force_that_feels_like(felt + step) / force_that_feels_like(felt - step));
 }
 
 }  // namespace

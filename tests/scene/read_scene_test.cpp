@@ -472,7 +472,7 @@ TEST_CASE("what looks like a contradiction and is none passes", "[scene][read]")
         "[hand]\npath = [[0, 1]]\nstroke = \"path\"", "[run]\nperiod_ms = 2.0",
         "[coupling]\nfeel_pN = [20, 21]\nfeel_within_pN = 5",
         "[coupling]\nmode = 1\nfeel_within_pN = 5",
-        "[statics]\nmethod = \"limited-memory\"\n[coupling]\nfeel_within_pN = 5");
+        "[statics]\nmethod = \"quasi-static\"\n[coupling]\nfeel_within_pN = 5");
     INFO(lines);
 
     CHECK(error_of(base + lines + "\n") == "no error");
@@ -640,7 +640,7 @@ springs = ["A 3 SG 40 SG"]
 within_angstrom = 8
 around = "fixed"
 [statics]
-method = "inverse-mass"
+method = "quasi-static"
 steps = 6
 largest_move_angstrom = 0.3
 pairs = "double"
@@ -662,7 +662,7 @@ relax_steps = 0
     CHECK(scene.joints.springs == std::vector<std::string>{"A 3 SG 40 SG"});
     CHECK(scene.joints.within_angstrom == 8.0);
     CHECK(scene.joints.around == "fixed");
-    CHECK(scene.statics.method == RelaxMethod::InverseMass);
+    CHECK(scene.statics.method == RelaxMethod::QuasiStatic);
     CHECK(scene.statics.steps == 6);
     CHECK(scene.statics.largest_move_angstrom == 0.3);
     CHECK(scene.statics.pairs == PairPrecision::Double);

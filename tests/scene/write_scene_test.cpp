@@ -222,7 +222,7 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
     scene.hand.release_s = 4;
     scene.joints.within_angstrom = 8;
     scene.joints.region_angstrom = 30;
-    scene.statics.method = RelaxMethod::LimitedMemory;
+    scene.statics.method = RelaxMethod::QuasiStatic;
     scene.statics.cutoff_angstrom = 12;
     scene.statics.budget_us = 1000;
     scene.coupling.feel_pN = {0.1 + 0.2, 3000};

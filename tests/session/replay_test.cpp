@@ -162,10 +162,10 @@ TEST_CASE("columns that an older recording lacks are not compared, all others ar
           "[session][replay][format]") {
     const std::vector<ServoTick> recorded = some_ticks(6);
     std::vector<ServoTick> played = recorded;
-    played[2].contact.torque_newton_metre.x() = 1;  // which the recording lacks
+    played[2].waiting_m.x() = 1;  // which the recording lacks
     played[4].sent_newton.y() = -0.45;
-    const std::string trace = without_columns(trace_of(recorded, 1), {"torque_", "_turn_"});
-    REQUIRE(trace.find("torque") == std::string::npos);
+    const std::string trace = without_columns(trace_of(recorded, 1), {"waiting_m", "at_stop"});
+    REQUIRE(trace.find("waiting") == std::string::npos);
 
     const TraceCheck check = check_of(trace, played, 6, 1);
 
@@ -176,14 +176,13 @@ TEST_CASE("columns that an older recording lacks are not compared, all others ar
     CHECK(check.first()->column == "device_force_y_N");
     CHECK(check.first()->recorded == "-0.2");
     REQUIRE(check.notes().size() == 1);
-    CHECK_THAT(check.notes()[0],
-               Contains("lacks them: torque_x_nN_angstrom") && Contains("molecule_turn_z_rad"));
+    CHECK_THAT(check.notes()[0], Contains("lacks them: waiting_m") && Contains("at_stop"));
 }
 
 TEST_CASE("a row of an older recording with a column more is reported",
           "[session][replay][format]") {
     const std::vector<ServoTick> ticks = some_ticks(2);
-    std::string trace = without_columns(trace_of(ticks, 1), {"torque_"});
+    std::string trace = without_columns(trace_of(ticks, 1), {"waiting_m"});
     trace.insert(trace.size() - 1, ",1");
 
     const TraceCheck check = check_of(trace, ticks, 2, 1);

@@ -83,8 +83,7 @@ TorsionModel open_ring() {
                                {MoleculeBase{BaseFreedom::Held, 0}});
 }
 
-constexpr std::array all_methods{RelaxMethod::QuasiStatic, RelaxMethod::LimitedMemory,
-                                 RelaxMethod::InverseMass};
+constexpr std::array all_methods{RelaxMethod::QuasiStatic, RelaxMethod::SecondOrder};
 
 }  // namespace
 
@@ -215,7 +214,6 @@ TEST_CASE("where rounding hides what is lower smaller forces decide, until a min
     const TorsionModel model =
         test::model_of(test::tetrapeptide(), {BaseFreedom::Held}, test::all_joints);
     RelaxSettings settings;
-    settings.method = GENERATE(RelaxMethod::LimitedMemory, RelaxMethod::InverseMass);
     settings.force_tolerance = 0;
     settings.steps = 20000;
 
@@ -324,11 +322,9 @@ TEST_CASE("crambin at rest keeps its disulphides", "[statics][relax]") {
 
 TEST_CASE("with pairs that are kept many calls of one step are one call of many steps",
           "[statics][relax]") {
-    const RelaxMethod method = GENERATE(RelaxMethod::LimitedMemory, RelaxMethod::InverseMass);
     const TorsionModel model = open_ring();
     const auto relax = [&](std::size_t calls, std::size_t steps, bool keeps_pairs) {
         RelaxSettings settings;
-        settings.method = method;
         settings.steps = steps;
         settings.keeps_pairs = keeps_pairs;
         TorsionState state = build_torsion_state(model);

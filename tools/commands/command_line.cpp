@@ -73,7 +73,7 @@ public:
 
     std::string make_usage(const CLI::App* app, std::string name) const override {
         if (!app->get_parent()) return "\n" + usage_;
-        return CLI::Formatter::make_usage(app, app->get_parent()->get_name() + " " + name);
+        return CLI::Formatter::make_usage(app, name);
     }
 
     // Of a program all commands, in their order.
@@ -269,7 +269,7 @@ std::string explain(const CLI::ParseError& error, const CLI::App& program,
 
 std::vector<std::string> expand_help(const CLI::App& program, std::vector<std::string> arguments) {
     if (arguments.empty() || arguments[0] != "help") return arguments;
-    if (arguments.size() == 1) return {"--help"};
+    if (arguments.size() == 1 || arguments[1] == "help") return {"--help"};
     const bool is_command = !program
                                  .get_subcommands([&](const CLI::App* command) {
                                      return command->get_name() == arguments[1];

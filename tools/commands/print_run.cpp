@@ -4,6 +4,7 @@
 #include "core/units.h"
 #include "devices/mouse_handle.h"
 #include "haptics/gains.h"
+#include "math/eigenvectors.h"
 #include "session/accuracy_report.h"
 #include "session/plan_hand.h"
 #include "session/run_headless.h"
@@ -11,7 +12,6 @@
 #include "simulation/probe.h"
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -92,8 +92,7 @@ void print_gains(const SceneDescription& scene, const World& world, double dista
     const GuardedGain gain =
         guarded_gain(guarded, units::newton_per_kcal_per_mol_angstrom * field.force,
                      units::newton_per_metre_per_kcal_per_mol_angstrom2 * field.stiffness);
-    const Eigen::SelfAdjointEigenSolver<Mat3> along(gain.tensor, Eigen::EigenvaluesOnly);
-    const Vec3 cm = along.eigenvalues() / units::angstrom_per_metre * 100;
+    const Vec3 cm = find_eigenvalues(gain.tensor) / units::angstrom_per_metre * 100;
     fmt::print(
         "  gain        {:.2f} cm of handle per Å there; with coupling.gain_shape = \"tensor\" "
         "{:.2f}, {:.2f} and {:.2f} cm\n",
@@ -127,9 +126,7 @@ void print_relaxed(const World& world, const RelaxReport& r) {
         r.energy_before, r.energy_after, r.evaluations, r.displacement,
         r.angle * 180 / std::numbers::pi, r.force * force_nN * 1e3);
     const Vec3 springs = units::newton_per_metre_per_kcal_per_mol_angstrom2 *
-                         Eigen::SelfAdjointEigenSolver<Mat3>(field_on_grabbed(world).stiffness,
-                                                             Eigen::EigenvaluesOnly)
-                             .eigenvalues();
+                         find_eigenvalues(field_on_grabbed(world).stiffness);
     fmt::print("  start       {:.3f} kcal/mol, {:.3f} nN; {:.1f}, {:.1f} and {:.1f} N/m\n",
                start.potential_kcal_per_mol, start.force_newton.norm() * 1e9, springs.x(),
                springs.y(), springs.z());

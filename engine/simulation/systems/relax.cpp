@@ -51,29 +51,6 @@ RelaxStepReport relax_active(World& world, AdaptiveState& adaptive) {
     return report;
 }
 
-// Where the scene asks for a minimiser instead of the paper's step.
-RelaxStepReport minimise_all(World& world) {
-    const TorsionModel& model = model_of(world);
-    TorsionState& state = world.resource<TorsionState>();
-    Solver& solver = world.resource<Solver>();
-    const RelaxSettings& settings = solver.settings;
-    RelaxStepReport report;
-    const double before = solver.safe.energy();
-    const JointRelaxReport relaxed =
-        relax_joints(model, settings, state, solver.statics,
-                     [](const RelaxProgress&) { return noted_interrupt() == 0; });
-    report.hand_work = relaxed.energy_before - before;
-    report.energy_change = relaxed.energy_after - relaxed.energy_before;
-    report.evaluations = relaxed.evaluations;
-    report.active = static_cast<std::size_t>(model.coordinates);
-    report.steps = settings.steps;
-    report.is_finite = relaxed.end != RelaxEnd::NotFinite && std::isfinite(state.energy());
-    if (!report.is_finite) return report;
-    report.largest_move = find_largest_move(solver.safe.positions, state.positions);
-    solver.safe = state;
-    return report;
-}
-
 // A renewal belongs to the state at its request. Nothing where none is used.
 std::optional<Renewal> adopt_due(const World& world, const StepInput& input, SecondOrder& second) {
     const bool is_due =
@@ -188,9 +165,7 @@ void relax(World& world, const StepInput& input) {
 RelaxStepReport relax_mobile(World& world, const StepInput& input) {
     if (AdaptiveState* const adaptive = world.find_resource<AdaptiveState>())
         return relax_active(world, *adaptive);
-    if (SecondOrder* const second = world.find_resource<SecondOrder>())
-        return follow_by_second_order(world, input, *second);
-    return minimise_all(world);
+    return follow_by_second_order(world, input, world.resource<SecondOrder>());
 }
 
 MobileCoordinates save_mobile(const World& world) {
@@ -212,10 +187,9 @@ void restore_mobile(const MobileCoordinates& saved, World& world) {
     } else {
         state = world.resource<Solver>().safe;
         // A model of where that went wrong is of no use.
-        if (SecondOrder* const second = world.find_resource<SecondOrder>()) {
-            HeldParts held = second->statics.renewals.lineariser.held;
-            second->statics = build_second_order_statics(model_of(world), std::move(held));
-        }
+        SecondOrderStatics& statics = world.resource<SecondOrder>().statics;
+        statics = build_second_order_statics(model_of(world),
+                                             HeldParts(statics.renewals.lineariser.held));
     }
     copy_positions(world);
 }

@@ -25,8 +25,8 @@ constexpr std::size_t local_steps = 300;
 constexpr double apart = 0.001;  // Å, of the two runs that make the floor
 
 // What rows call JointWeights. Whoever compares runs finds the names that rows have always had.
-constexpr std::array<std::string_view, joint_weight_names.size()> weight_rows{
-    "plain", "inertia", "single", "light", "near-hand"};
+constexpr std::array<std::string_view, joint_weight_names.size()> weight_rows{"plain", "single",
+                                                                              "near-hand"};
 
 // ---- what is compared --------------------------------------------------------------------------
 
@@ -104,10 +104,9 @@ LocalEnd play_local(const BenchStart& start, const TorsionState& pose, World& wo
 
 // Most of the way with fast pairs, the end in double. Returns the rms force that is left.
 double bring_to_rest(const BenchStart& start, World& fast, World& exact) {
-    (void)relax(start, RelaxMethod::InverseMass, 1500, fast);
-    (void)relax(start, RelaxMethod::LimitedMemory, 1500, fast);
+    (void)relax(start, RelaxMethod::SecondOrder, 3000, fast);
     put(fast.resource<TorsionState>(), exact);
-    return relax(start, RelaxMethod::LimitedMemory, 200, exact);
+    return relax(start, RelaxMethod::SecondOrder, 200, exact);
 }
 
 // Where all joints are at rest, and where they go when the hand moves.

@@ -38,7 +38,7 @@ std::string bench_adaptive(const std::string& scene_name, const SceneDescription
                            const AdaptiveBenchSettings& settings, std::vector<BenchRow>& rows);
 
 // Spheres of 1,000 to 100,000 atoms cut from the scene's system around what the hand's spring
-// holds, all bases fixed, 12 Å, weights inverse-moved-atoms: adaptive/SCENE/atoms=N/active=40, its
+// holds, all bases fixed, 12 Å, weights hand-proximity: adaptive/SCENE/atoms=N/active=40, its
 // choice, exponents of growth with the atoms, and with the active joints in 30,000 of them. Returns
 // a table likewise.
 std::string bench_spheres(const std::string& scene_name, const SceneDescription& scene,

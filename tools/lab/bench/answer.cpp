@@ -93,34 +93,22 @@ std::vector<Method> build_methods(const BenchStart& start, std::optional<double>
     const auto build = [&](const SceneDescription& scene) {
         return build_mechanics_world(scene, model_of(start.world), held_part(start.world));
     };
-    const auto near = [&](double reach, std::optional<double> pairs_end) {
+    const auto near = [&](std::optional<double> pairs_end) {
         SceneDescription scene = with_cutoff(second_order_scene(start.scene), pairs_end);
-        scene.statics.near_angstrom = reach;
+        scene.statics.near_angstrom = 6;
         return build(scene);
     };
     const auto paper = [&](std::size_t active, std::optional<double> pairs_end) {
         return build_variant(start,
                              {active, pairs_end, JointWeights::Acceleration, PairPrecision::Fast});
     };
-    SceneDescription bfgs = with_cutoff(start.scene, {});
-    bfgs.statics.method = RelaxMethod::InverseMass;
-    bfgs.statics.steps = 1;
     const std::string with = cutoff ? fmt::format("/cutoff={}", *cutoff) : "";
     std::vector<Method> methods;
     methods.push_back(
         {"default", build(start.scene), 0, start.scene.statics.cutoff_angstrom.has_value()});
-    for (const double reach : {4.0, 6.0, 10.0})
-        methods.push_back({fmt::format("near={}", reach), near(reach, {})});
-    for (const std::int64_t responses : {0, 8}) {
-        SceneDescription scene = with_cutoff(second_order_scene(start.scene), {});
-        scene.statics.responses = responses;
-        methods.push_back(
-            {responses == 0 ? "responses=all" : fmt::format("responses={}", responses),
-             build(scene)});
-    }
-    if (cutoff) methods.push_back({"near=6" + with, near(6, cutoff), 0, true});
+    methods.push_back({"near=6", near({})});
+    if (cutoff) methods.push_back({"near=6" + with, near(cutoff), 0, true});
     methods.push_back({"full-second-order", {}, 2});
-    methods.push_back({"bfgs", build(bfgs)});
     methods.push_back({"paper-40", paper(40, {})});
     methods.push_back({"paper-all", paper(everything, {})});
     if (cutoff) methods.push_back({"paper-all" + with, paper(everything, cutoff), 0, true});

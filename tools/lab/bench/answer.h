@@ -17,7 +17,7 @@ namespace palpa {
 inline constexpr int usual_answer_poses = 10;
 
 // Completely relaxed poses: found, evenly spaced over 3 Å along x, or those of a file
-// (experiments/rest_poses.h).
+// (tools/lab/experiments/rest_poses.h).
 struct AnswerPoseSettings {
     std::optional<int> count;  // unset: all of the file, or the usual number
     std::optional<std::filesystem::path> file;
@@ -78,9 +78,9 @@ Answers measure_answers(const SceneDescription& scene, const AnswerPoseSettings&
 //                                 error_median, error_90, and error_rms relative to the rms force;
 //                                 samples are ms of each way
 //   answer/SCENE/way/DIRECTION    each of them
-//   answer/SCENE/real-time        tools/bench/real_time_way.h
+//   answer/SCENE/real-time        tools/lab/bench/real_time_way.h
 //
-// METHOD is `default`, as the scene has it; with all pairs `near=R`, `full-second-order`, `bfgs`,
+// METHOD is `default`, as the scene has it; with all pairs `near=6`, `full-second-order`,
 // `paper-40`, `paper-all`; and `near=6/cutoff=C` and `paper-all/cutoff=C`, with the scene's cutoff
 // or 12 Å, which begin at rest with that.
 Answers bench_answer(const std::string& scene_name, const SceneDescription& scene,

@@ -100,7 +100,7 @@ std::string bench_best_joints(const std::string& scene_name, const SceneDescript
                                     "derivatives of more take too long",
                                     model_of(world).coordinates, most));
     }
-    const double left = relax(start, RelaxMethod::LimitedMemory, 300, world);
+    const double left = relax(start, RelaxMethod::SecondOrder, 300, world);
     say(fmt::format("at rest to {:.2g} kcal/mol per rad and Å", left));
     const std::vector<Vec3> responses = find_responses(find_slopes(world));
 

@@ -1,10 +1,10 @@
-#include "charmm/cut_sphere.h"
 #include "core/load_error.h"
 #include "core/text.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
-#include "statics/held_model.h"
 #include "tools/lab/bench/adaptive.h"
+#include "tools/lab/bench/cut_sphere.h"
+#include "tools/lab/bench/held_model.h"
 #include "tools/lab/bench/stroke.h"
 
 #include <fmt/format.h>
@@ -51,7 +51,7 @@ World build_sphere(const SceneDescription& scene, const CutSystem& sphere, const
     TorsionModel model = build_held_model(sphere.connectivity, sphere.topology, sphere.positions);
     const std::uint32_t body = model.tree.bodies.body_of[spring.atoms.front()];
     const std::uint32_t grabbed = model.tree.molecule_of[body];
-    const Variant variant{0, 12.0, JointWeights::InverseMovedAtoms, PairPrecision::Fast};
+    const Variant variant{0, 12.0, JointWeights::HandProximity, PairPrecision::Fast};
     return build_mechanics_world(scene_with(scene, variant), std::move(model),
                                  {grabbed, std::move(spring)});
 }

@@ -129,10 +129,8 @@ void add_rows(const std::string& name, TreeBench& bench, std::vector<BenchRow>& 
     rows.back().error_unit = "relative";
     rows.back().reference = "sum of squared accelerations";
     const std::vector<double> factors = near_hand(bench);
-    const std::array<std::pair<const char*, MetricWeights>, 3> weights{
-        {{"near-hand", {MetricWeight::Plain, factors}},
-         {"inertia", {MetricWeight::Inertia, {}}},
-         {"plain", {MetricWeight::Plain, {}}}}};
+    const std::array<std::pair<const char*, MetricWeights>, 2> weights{
+        {{"near-hand", {MetricWeight::Inertia, factors}}, {"plain", {MetricWeight::Plain, {}}}}};
     for (const auto& [weight, counts] : weights) {
         update_metric(bench.tree, state, counts, bench.metric);
         bench.selection = build_joint_selection(bench.tree);

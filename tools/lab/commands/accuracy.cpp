@@ -48,18 +48,13 @@ nlohmann::ordered_json as_json(const AccuracyResult& r) {
             {"error_90_pN", r.ninety_pN},
             {"errors_pN", r.errors_pN},
             {"reference_moving_pN", r.moving_pN},
-            {"audits", report.estimates},  // and by the names of today:
-            {"audits_within_share", report.within_share},
-            {"audits_error_90_pN", report.ninety_pN},
             {"error_estimates", report.estimates},
             {"estimates_within_share", report.within_share},
             {"estimates_error_90_pN", report.ninety_pN},
             {"active_mean", report.active},
             {"steps_mean", report.steps},
             {"step_median_us", r.summary.step_median_us},
-            {"largest_raise_of_A_d", report.largest_cap_ratio},
             {"largest_cap_ratio", report.largest_cap_ratio},
-            {"gave_way", find_unmet(report).all()},
             {"not_met", find_unmet(report).all()},
             {"unsaid", r.unsaid()}};
 }

@@ -50,7 +50,6 @@ nlohmann::ordered_json as_json(std::size_t number, const ClosedPathResult& r) {
             {"felt_share", r.felt_share},
             {"largest_N", r.largest_N},
             {"clipped_mm", r.clipped_mm},
-            {"dropped_mm", r.clipped_mm},  // its name before
             {"clamped_share", r.clamped_share},
             {"was_limited", r.was_limited},
             {"was_held_back", r.was_held_back},

@@ -25,16 +25,11 @@ struct AnswerStyle {
     std::string_view title;
     std::string_view look;
 };
-constexpr std::array<AnswerStyle, 13> answer_styles{{
+constexpr std::array<AnswerStyle, 8> answer_styles{{
     {"default", "as the scene has it", "pt 2 ps 1.3 lw 1.5 lc rgb '#000000'"},
-    {"near=4", "exact within 4 Å", "pt 9 ps 0.7 lw 2 lc rgb '#56b4e9'"},
     {"near=6/cutoff", "exact within 6 Å", "pt 6 ps 0.9 lw 2 lc rgb '#0072b2'"},
     {"near=6", "exact within 6 Å", "pt 7 ps 0.7 lw 2 lc rgb '#0072b2'"},
-    {"near=10", "exact within 10 Å", "pt 11 ps 0.7 lw 2 lc rgb '#009e73'"},
-    {"responses=all", "among all coordinates", "pt 2 ps 0.9 lw 2 lc rgb '#999999'"},
-    {"responses=", "in the span of 8 responses", "pt 1 ps 0.9 lw 2 lc rgb '#999999'"},
     {"full-second-order", "full second order", "pt 5 ps 0.7 lw 2 lc rgb '#000000'"},
-    {"bfgs", "BFGS", "pt 13 ps 0.9 lw 2 lc rgb '#cc79a7'"},
     {"paper-40", "paper’s step, 40 active", "pt 9 ps 0.7 lw 2 lc rgb '#e69f00'"},
     {"paper-all/cutoff", "paper’s step, all", "pt 6 ps 0.9 lw 2 lc rgb '#d55e00'"},
     {"paper-all", "paper’s step, all", "pt 7 ps 0.7 lw 2 lc rgb '#d55e00'"},

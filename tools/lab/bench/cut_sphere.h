@@ -25,11 +25,6 @@ std::vector<std::uint32_t> find_sphere(const Connectivity& connectivity,
                                        std::span<const Vec3> positions, std::uint32_t centre,
                                        std::size_t most_atoms);
 
-// Those atoms of a topology, rising, with the terms, exclusions and pairs three bonds apart among
-// them: what reaches out is left out. Pairs stay excluded though the bonds that join them be cut.
-// Tables of types and maps stay whole, and solvation goes along.
-Topology cut_topology(const Topology& whole, std::span<const std::uint32_t> atoms);
-
 // Cuts a sphere; separate pieces of chain become molecules of their own.
 CutSystem cut_sphere(const Connectivity& connectivity, const Topology& topology,
                      std::span<const Vec3> positions, std::uint32_t centre, std::size_t most_atoms);

@@ -1,4 +1,4 @@
-#include "charmm/cut_sphere.h"
+#include "tools/lab/bench/cut_sphere.h"
 
 #include "charmm/build_topology.h"
 #include "charmm/force_field.h"

@@ -1,13 +1,13 @@
-#include "statics/held_model.h"
+#include "tools/lab/bench/held_model.h"
 
 #include "charmm/build_topology.h"
-#include "charmm/cut_sphere.h"
 #include "formats/psf.h"
 #include "formats/structure.h"
 #include "molecule/match_atoms.h"
 #include "statics/torsion_state.h"
 #include "tests/support/paths.h"
 #include "tests/support/torsion_case.h"
+#include "tools/lab/bench/cut_sphere.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-#include "statics/held_model.h"
+#include "tools/lab/bench/held_model.h"
 
 #include <cstddef>
 #include <cstdint>
