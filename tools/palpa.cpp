@@ -38,12 +38,10 @@ constexpr const char* usage =
     "  palpa COMMAND ...   does one of these:\n";
 
 constexpr const char* footer =
-    "palpa help COMMAND explains it with examples; palpa help KEY explains a key of scene files, "
-    "and\n"
-    "palpa help keys all of them. What is measured has a program of its own, palpa-lab. Exit "
-    "codes:\n"
-    "0 done, 1 a check failed or a command was refused, 2 wrong input or something is missing,\n"
-    "3 internal error, 4 no answer from an engine, 128+N ended by signal N.";
+    "palpa help COMMAND explains it with examples; palpa help KEY explains a key of scene files,\n"
+    "palpa help keys all of them. palpa-lab, which tools/build makes, measures speed, errors and\n"
+    "stability. Exit codes: 0 done, 1 a check failed or a command was refused, 2 wrong input or\n"
+    "something is missing, 3 internal error, 4 no answer from an engine, 128+N ended by signal N.";
 
 }  // namespace
 

@@ -120,8 +120,6 @@ double cos(double x) noexcept {
     return rest.count == 0 || rest.count == 3 ? value : -value;
 }
 
-double tan(double x) noexcept { return sin(x) / cos(x); }
-
 double atan(double x) noexcept {
     static constexpr std::array c{1.0 / 3,  -1.0 / 5,  1.0 / 7, -1.0 / 9,
                                   1.0 / 11, -1.0 / 13, 1.0 / 15};

@@ -140,7 +140,7 @@ private:
     double length_m_;
 };
 
-// Constant.
+// One gain everywhere, as in the paper's modes 2, 4 and 5.
 struct ConstantDisplacementLaw {
     double gain = 0.25e9;
 

@@ -364,13 +364,6 @@ void check_ranges(const SceneDescription& scene, Problems& problems) {
     const auto check = [&](bool right, const std::string& key, const std::string& what) {
         if (!right) problems.add(problems.place_of(key), what);
     };
-    check(!scene.coupling.feel_within_pN || !scene.has_statics() ||
-              method_of(scene.statics) == RelaxMethod::QuasiStatic ||
-              method_of(scene.statics) == RelaxMethod::SecondOrder,
-          "statics.method",
-          fmt::format("'statics.method' is \"{}\", which cannot follow an error limit "
-                      "(coupling.feel_within_pN); expected second-order or quasi-static",
-                      relax_method_names[static_cast<std::size_t>(method_of(scene.statics))]));
     const StaticsDescription& statics = scene.statics;
     const bool is_adaptive =
         statics.budget_us.has_value() || statics.active < StaticsDescription{}.active;

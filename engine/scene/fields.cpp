@@ -522,8 +522,7 @@ private:
 }  // namespace
 
 void visit_scene(FieldVisitor& v, SceneDescription& scene) {
-    v.text({.key = "format", .meaning = "version of the scene format, \"2.0\" unless given"},
-           scene.format);
+    v.text({.key = "format", .meaning = "version of the scene format; empty: 2.0"}, scene.format);
     v.text({.key = "title", .meaning = "name of the scene"}, scene.title);
     v.text({.key = "about", .meaning = "description in a few sentences"}, scene.about);
     choose(v, {.key = "level", .meaning = "audience, which the start screen shows"},

@@ -311,9 +311,12 @@ bool has_journal(const fs::path& folder) {
     return fs::exists(folder / journal_name, error);
 }
 
+// Recordings from before 1.0 do not state theirs.
+constexpr FileVersion unstated_version{1, 0};
+
 FileVersion read_recording_version(const fs::path& folder) {
     const fs::path session = folder / "session.toml";
-    if (!is_there(session)) return {1, 0};
+    if (!is_there(session)) return unstated_version;
     const std::string text = read_text_file(session);
     std::size_t number = 0;
     for (const std::string_view line : split_lines(text)) {
@@ -325,7 +328,7 @@ FileVersion read_recording_version(const fs::path& folder) {
                         fmt::format("'{}' is not the number of a recording's format; expected {}",
                                     printable(stated.substr(0, 40)), to_string(recording_version)));
     }
-    return {1, 0};  // those of before did not state it
+    return unstated_version;
 }
 
 std::string read_recorded_kernels(const fs::path& folder) {

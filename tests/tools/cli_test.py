@@ -98,7 +98,13 @@ class Cli(unittest.TestCase):
         table = self.palpa("help", "coupling").stdout
         self.assertIn(one, table)
         self.assertNotIn("hand.grip\n", table)
-        self.assert_bad_input(self.palpa("help", "coupling.mod"), "did you mean 'coupling.mode'?")
+        for asked, said in ((["coupling.mod"], "did you mean 'coupling.mode'?"), (["perid_ms"], "did you mean 'period_ms'?"),
+                            (["mode", "perid_ms"], "did you mean 'period_ms'?"), (["mode", "nonsense"], "'nonsense'")):
+            with self.subTest(asked=asked):
+                result = self.palpa("help", *asked)
+                self.assert_bad_input(result, said)
+                self.assertEqual(result.stdout, "")
+        self.assertIn("run.period_ms\n", self.palpa("help", "run.").stdout)  # a command's name, too
 
     def test_what_is_misspelt_gets_the_near_name(self):
         for arguments, hint in ((["rnu", WATER], "did you mean 'run'"),
@@ -219,7 +225,7 @@ class Cli(unittest.TestCase):
                                 (["run", WATER, "--mode"], "palpa run: the option --mode needs a value;"),
                                 (["--speed"], "palpa: unknown option '--speed' without a command"),
                                 (["help", "fly"], "palpa: unknown command 'fly'"),
-                                (["report"], "'palpa report' is 'palpa-lab report' now"),
+                                (["report"], "'palpa report' is 'palpa-lab report' now, which tools/build makes"),
                                 (["help", "bench"], "'palpa bench' is 'palpa-lab bench' now"),
                                 (["scene", "view"], "'palpa scene' is 'palpa help' now")):
             with self.subTest(arguments=arguments):

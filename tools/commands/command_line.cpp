@@ -46,7 +46,7 @@ constexpr std::array moved_commands = std::to_array<MovedCommand>({
     {"scene", "palpa help"},
 });
 
-// In lines of a page, behind the names.
+// Breaks a description into lines beside the column of names.
 std::string wrap(std::string_view text) {
     std::string page;
     std::size_t at = name_width;
@@ -67,16 +67,23 @@ class HelpFormatter : public CLI::Formatter {
 public:
     explicit HelpFormatter(std::string usage) : usage_(std::move(usage)) {
         column_width(name_width);
-        label("OPTIONS", "OPTION ...");
         label("Positionals", "Arguments");
     }
 
     std::string make_usage(const CLI::App* app, std::string name) const override {
         if (!app->get_parent()) return "\n" + usage_;
-        return CLI::Formatter::make_usage(app, name);
+        // What is no option comes first: an option of several values would take it too.
+        std::string usage = "Usage: " + name;
+        for (const CLI::Option* const positional :
+             app->get_options([](const CLI::Option* option) { return option->get_positional(); })) {
+            const std::string one = make_option_name(positional, true) +
+                                    (positional->get_expected_max() > 1 ? " ..." : "");
+            usage += positional->get_required() ? " " + one : " [" + one + "]";
+        }
+        return usage + " [OPTION ...]\n";
     }
 
-    // Of a program all commands, in their order.
+    // Lists all commands of a program, in their order.
     std::string make_subcommands(const CLI::App* app, CLI::AppFormatMode) const override {
         std::string lines;
         for (const CLI::App* const command : app->get_subcommands({})) {
@@ -100,7 +107,7 @@ public:
                            is_number        ? "N"
                            : base == "TEXT" ? "NAME"
                                             : base,
-                           option->get_expected_max() > 1 ? " ..." : "");
+                           option->get_expected_max() > 1 && !base.ends_with("...") ? " ..." : "");
     }
 
     // Ranges and needed options are said with the description; CLI11's lists of what is allowed
@@ -235,7 +242,10 @@ std::optional<std::string> explain_command(const CLI::App& program, const std::s
         return std::nullopt;
     }
     for (const auto& [before, now] : moved_commands) {
-        if (command == before) return fmt::format("'palpa {}' is '{}' now", before, now);
+        if (command != before) continue;
+        const bool is_lab = now.starts_with("palpa-lab");
+        return fmt::format("'palpa {}' is '{}' now{}", before, now,
+                           is_lab ? ", which tools/build makes" : "");
     }
     const std::string near = hint_of(command, names);
     return fmt::format("{0}: unknown command '{1}'{2}; see {0} --help", program.get_name(),

@@ -19,7 +19,7 @@ struct Program {
     std::optional<int> (*run_without_command)(const std::vector<std::string>& arguments) = nullptr;
 };
 
-// Does what main has to. Returns the exit code.
+// Reads the arguments, runs the command and turns errors into an exit code, which it returns.
 int run_program(const Program& program, int argc, char** argv);
 
 }  // namespace palpa

@@ -5,40 +5,51 @@
 #include "scene/fields.h"
 
 #include <fmt/format.h>
-#include <cstddef>
 #include <string_view>
 
 namespace palpa {
 namespace {
 
-// "coupling.mode" is found by its name, its last part, and its table.
+// "coupling.mode" is found by its name, its last part, and its table, also as "coupling.".
 bool is_asked_for(std::string_view key, std::string_view asked) {
     if (asked == "keys" || key == asked || key.ends_with("." + std::string(asked))) return true;
+    if (asked.ends_with('.')) asked.remove_suffix(1);
     return key.starts_with(std::string(asked) + ".");
 }
 
-std::size_t explain_key(const std::string& asked) {
-    std::size_t found = 0;
-    for (const FieldNote& field : list_fields()) {
-        if (!is_asked_for(field.key, asked)) continue;
-        fmt::print("{}\n  {}\n  value: {}; unless given: {}\n", field.key, field.meaning,
-                   field.type, field.fallback);
-        ++found;
-    }
+std::vector<FieldNote> find_fields(const std::string& asked) {
+    std::vector<FieldNote> found = list_fields();
+    std::erase_if(found, [&](const FieldNote& field) { return !is_asked_for(field.key, asked); });
     return found;
+}
+
+// The nearest of the keys and of their last parts.
+std::string near_key_hint(const std::string& asked) {
+    const std::vector<FieldNote> fields = list_fields();
+    std::vector<std::string_view> known;
+    for (const FieldNote& field : fields) {
+        known.push_back(field.key);
+        known.push_back(
+            std::string_view(field.key).substr(std::string_view(field.key).rfind('.') + 1));
+    }
+    return near_name_hint(asked, known);
 }
 
 }  // namespace
 
 bool print_scene_keys(const std::vector<std::string>& asked) {
     for (const std::string& key : asked) {
-        if (explain_key(key) > 0) continue;
-        if (key.find('.') == std::string::npos) return false;
-        const std::vector<FieldNote> fields = list_fields();
-        std::vector<std::string_view> known;
-        for (const FieldNote& field : fields) known.push_back(field.key);
+        if (!find_fields(key).empty()) continue;
+        const std::string hint = near_key_hint(key);
+        if (hint.empty() && key == asked.front()) return false;
         throw LoadError({"palpa help"}, fmt::format("unknown key '{}'{}; 'palpa help keys' has all",
-                                                    printable(key), near_name_hint(key, known)));
+                                                    printable(key), hint));
+    }
+    for (const std::string& key : asked) {
+        for (const FieldNote& field : find_fields(key)) {
+            fmt::print("{}\n  {}\n  value: {}; unless given: {}\n", field.key, field.meaning,
+                       field.type, field.fallback);
+        }
     }
     return true;
 }

@@ -5,8 +5,9 @@
 
 namespace palpa {
 
-// Of keys by their full name or its last part, of tables, or of "keys", all of them. Returns false
-// where a word is neither; throws LoadError with the nearest name where it has a point.
+// Explains keys by their full name or its last part, tables ("view", or "run." where a command has
+// that name), and with "keys" all. Returns false where the first word is none of these; throws
+// LoadError with the nearest name where a word is almost a key.
 bool print_scene_keys(const std::vector<std::string>& asked);
 
 }  // namespace palpa

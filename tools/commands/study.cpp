@@ -47,7 +47,7 @@ void add_study_options(CLI::App& command, StudyOptions& options) {
     add_setting(command, "--period-ms", "declared period of the simulation, ms (default 14)",
                 options.settings);
     add_setting(command, "--hand",
-                "grip of the emulated hand: light, slack, medium, firm or firm-grip",
+                "model of the hand at the handle: light, slack, medium, firm or firm-grip",
                 options.settings);
     add_setting(command, "--friction", "Coulomb friction of the device", options.settings);
     add_set_option(command, options.settings);

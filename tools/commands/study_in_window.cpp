@@ -164,7 +164,7 @@ void add_study(CLI::App& program, ProgramCommand& chosen) {
     add_study_options(study, command);
     study.add_option("-o,--output", command.folder,
                      "folder for the trials, to which each person adds: trials.csv, session.json "
-                     "and line.csv");
+                     "and line.csv (required)");
     study.add_flag("--validation", command.validation,
                    "check the window's drawing by the Vulkan validation layer");
 }
