@@ -184,7 +184,6 @@ double largest_felt(const Mat3& felt) noexcept {
 
 PrintedDisplacementLaw::PrintedDisplacementLaw(const Parameters& p) noexcept
     : A_dmin_(p.A_dmin),
-      A_dmax_(p.A_dmax),
       beta_((p.A_dmax - p.A_dmin) / (pi / 2 - repeatable::atan(-p.gamma * p.F_off))),
       gamma_(p.gamma),
       F_off_(p.F_off),

@@ -119,7 +119,7 @@ public:
     double value(double F_m, double stiffness = 0) const noexcept;
 
 private:
-    double A_dmin_, A_dmax_, beta_, gamma_, F_off_, atan_at_0_;
+    double A_dmin_, beta_, gamma_, F_off_, atan_at_0_;
 };
 
 // Eq. 3 at sqrt(F² + (l k)²), k the stiffness (N/m): as printed the gain also falls to A_dmin at
