@@ -16,7 +16,7 @@ struct FileVersion {
     friend auto operator<=>(const FileVersion&, const FileVersion&) = default;
 };
 
-// What this program writes; it reads versions of the same major number.
+// The versions that this program writes; it reads those of the same major number.
 // Scene: scene.toml, its key `format`, of this version where it is not given. Recording: columns of
 // trace.csv and keys of summary.json, the number is in session.toml. Journal: journal.txt.
 inline constexpr FileVersion scene_version{2, 0}, recording_version{2, 1}, journal_version{2, 1};

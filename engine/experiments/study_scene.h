@@ -31,8 +31,8 @@ struct StudyOptions {
 // The period in the paper for its waters; the setting run.period_ms replaces it.
 inline constexpr double study_period_ms = 14;
 
-// With a study's period, then the options' settings, then `settings`. Throws LoadError, as do all
-// below.
+// Reads the scene with a study's period, then the options' settings, then `settings`. Throws
+// LoadError, as do all below.
 SceneDescription read_study_scene(const StudyOptions& options,
                                   const std::vector<std::string>& settings);
 // The place without force, Å.

@@ -51,7 +51,7 @@ struct Switching {
     V scale, offset;
 };
 
-// With a second derivative that is continuous, and its slope:
+// The same with a continuous second derivative, and its slope:
 //   S = 1 - y^3 (10 - 15 y + 6 y^2),  S'/r = -60 y^2 (1 - y)^2/(c^2 - m^2)
 struct SmoothSwitching : Switching {
     explicit HWY_INLINE SmoothSwitching(const PairScheme& scheme) : Switching(scheme) {
@@ -467,7 +467,7 @@ JobSum sum_job(const PairJob& job) {
                              VanDerWaals<VanDerWaalsCutoff::ForceSwitch>>(job);
     }
     using Whole = VanDerWaals<VanDerWaalsCutoff::None>;
-    // Rare: without code of its own for forces alone.
+    // A rare one has no code of its own for forces alone.
     if (job.scheme->distance_dielectric)
         return Kernel<Electrostatics<None, true>, Whole, true>(job).sum(job.begin, job.end);
     return sum_with_laws<Electrostatics<None, false>, Whole>(job);

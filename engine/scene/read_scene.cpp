@@ -757,8 +757,8 @@ toml::table parse_table(std::string_view text, const fs::path& file) {
     }
 }
 
-// What the key `format` states. Throws LoadError for a version that cannot be read; one of a newer
-// minor number is a note.
+// Reads the version that the key `format` states. Throws LoadError for a version that cannot be
+// read; one of a newer minor number is a note.
 FileVersion read_version(const toml::table& root, Problems& problems) {
     const toml::node* const node = root.get("format");
     if (!node || !node->is_string()) return scene_version;

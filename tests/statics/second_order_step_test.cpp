@@ -577,7 +577,7 @@ TEST_CASE("a slow hand is followed, and renews the model by its way alone",
 
 TEST_CASE("a hand that trembles where nothing is at rest yet renews less than once a step",
           "[statics][second-order]") {
-    // Where rounding leads is chance in a few steps; in all others three are enough.
+    // Rounding decides by chance how many a few steps need; three are enough in all others.
     constexpr std::size_t steps = 60, usual = 3, most = 12;
     std::vector<HeldPair> pairs = pairs_far_from_rest();
     std::size_t renewed = 0, unusual = 0;

@@ -72,7 +72,7 @@ public:
 
     std::string make_usage(const CLI::App* app, std::string name) const override {
         if (!app->get_parent()) return "\n" + usage_;
-        // What is no option comes first: an option of several values would take it too.
+        // Arguments come first: an option of several values would take them too.
         std::string usage = "Usage: " + name;
         for (const CLI::Option* const positional :
              app->get_options([](const CLI::Option* option) { return option->get_positional(); })) {

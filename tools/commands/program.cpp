@@ -49,7 +49,7 @@ int run_command_line(const Program& program, const std::vector<std::string>& typ
     parser.set_version_flag("--version", "");  // describe_version() has the words
     ProgramCommand chosen;
     program.add_commands(parser, chosen);
-    // Not in the help. CLI11 hands hidden flags to no command, so this comes last.
+    // Hides them from the help. CLI11 hands hidden flags to no command, so this comes last.
     for (CLI::Option* const option : parser.get_options()) option->group("");
     std::vector<std::string> arguments = move_structure_first(expand_help(parser, typed));
     if (program.run_without_command) {

@@ -1,4 +1,4 @@
-// What the programs have in common: arguments in, one command called, errors as exit codes.
+// The frame of both programs: arguments in, one command called, errors as exit codes.
 #pragma once
 #include "tools/commands/command.h"
 

@@ -1,4 +1,4 @@
-// What studies by people (palpa study) and by emulated operators (palpa-lab study) share.
+// The common part of studies by people (palpa study) and by emulated operators (palpa-lab study).
 #pragma once
 #include "core/files.h"
 #include "experiments/study_scene.h"
@@ -17,7 +17,7 @@ void add_study_options(CLI::App& command, StudyOptions& options);
 // The number of rounds.
 CLI::Option* add_rounds_option(CLI::App& command, StudyOptions& options);
 
-// How every summary begins.
+// Makes the first keys of every summary.
 nlohmann::ordered_json describe_study(const StudyOptions& options);
 // Before anything is played: makes the folder and locks it. What people or operators did before is
 // never written over: throws LoadError where one of `files` is there.

@@ -1,5 +1,5 @@
-// Where the two halves of tools/lab/scripts/compare_simbody meet: Simbody's headers are C++17, ours
-// C++20.
+// The interface between the two halves of tools/lab/scripts/compare_simbody: Simbody's headers are
+// C++17, ours C++20.
 //
 // Å, amu and kcal/mol for both: the unit of time is AKMA's.
 #pragma once

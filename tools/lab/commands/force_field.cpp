@@ -28,7 +28,7 @@ struct ForceFieldOptions {
     bool json = false;
 };
 
-// In the order of a file: topology, then parameters.
+// Lists what a file has, in its order: topology, then parameters.
 std::vector<std::pair<const char*, std::size_t>> count_contents(const ForceField& field) {
     return {{"atom_types", field.types.size()},    {"residues", field.residues.size()},
             {"patches", field.patches.size()},     {"nonbonded", field.nonbonded.size()},
