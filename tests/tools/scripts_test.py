@@ -1,4 +1,5 @@
 """The shell tools and the documentation: help, usage, the figure, the list of keys."""
+import math
 import os
 import re
 import struct
@@ -18,16 +19,10 @@ def run(*command, **options):
 
 class Scripts(unittest.TestCase):
     def test_every_tool_explains_itself(self):
-        for name in ("build", "run", "test", "scripts/plot_stroke", "lab/scripts/play_ways_out",
-                     "scripts/prepare_entries", "scripts/make_secondary_structure_references",
-                     "scripts/check_style", "scripts/package", "scripts/try_packages", "scripts/release",
-                     "scripts/check_windows", "scripts/package_windows", "scripts/try_windows", "windows/build",
-                     "windows/libraries", "scripts/make_manual", "scripts/check_skips",
-                     "lab/scripts/compare_peers", "scripts/fingerprints",
-                     "lab/scripts/compare_tl3", "lab/scripts/csv_table", "scripts/docs_stats", "scripts/mutate",
-                     "lab/scripts/plot_adaptive", "lab/scripts/run_table", "lab/scripts/soak", "lab/scripts/wake_up",
-                     "lab/scripts/plot_scenarios", "lab/scripts/stroke_table", "scripts/update_results",
-                     "lab/scripts/plot_study", "scripts/update_translations"):
+        folders = (ROOT / "tools" / "scripts", ROOT / "tools" / "lab" / "scripts")
+        scripts = [path.relative_to(ROOT / "tools") for folder in folders for path in folder.iterdir() if path.is_file()]
+        self.assertGreater(len(scripts), 30)
+        for name in ["build", "run", "test", "windows/build", "windows/libraries", *sorted(map(str, scripts))]:
             with self.subTest(tool=name):
                 result = run(ROOT / "tools" / name, "--help")
                 self.assertEqual(result.returncode, 0)
@@ -44,6 +39,27 @@ class Scripts(unittest.TestCase):
             self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
             self.assertEqual(struct.unpack(">II", data[16:24]), (1200, 480))
             self.assertEqual(run(ROOT / "tools" / "scripts" / "plot_stroke", folder, image).returncode, 2)
+
+    def test_a_bilayer_has_bonds_of_their_length_and_natural_lipids(self):
+        with tempfile.TemporaryDirectory() as folder:
+            patch = Path(folder) / "patch.pdb"
+            result = run(ROOT / "tools" / "scripts" / "make_bilayer", "--side", "1", "-o", patch)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            lipids = {}
+            for line in patch.read_text().splitlines():
+                if line.startswith("HETATM"):
+                    place = tuple(float(line[i:i + 8]) for i in (30, 38, 46))
+                    lipids.setdefault(line[22:26], {})[line[12:16].strip()] = place
+            self.assertEqual([len(lipid) for lipid in lipids.values()], [42, 42])
+            for lipid in lipids.values():
+                for a, b, length in (("P", "O13", 1.48), ("C2", "O21", 1.43), ("C31", "O32", 1.22), ("C27", "C28", 1.53)):
+                    self.assertAlmostEqual(math.dist(lipid[a], lipid[b]), length, delta=0.08)
+                one, two, three = ([x - y for x, y in zip(lipid[name], lipid["C2"])] for name in ("O21", "C1", "C3"))
+                normal = [two[(i + 1) % 3] * three[(i + 2) % 3] - two[(i + 2) % 3] * three[(i + 1) % 3] for i in range(3)]
+                self.assertGreater(sum(x * y for x, y in zip(one, normal)), 0)  # C2 is R
+            # Phosphates outside, the ends of chains in the middle
+            self.assertGreater(lipids["   1"]["P"][2], lipids["   1"]["C212"][2] + 10)
+            self.assertLess(lipids["   2"]["P"][2], lipids["   2"]["C212"][2] - 10)
 
     def test_pages_link_to_what_is_there(self):
         for readme in ROOT.glob("**/*.md"):
