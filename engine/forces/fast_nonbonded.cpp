@@ -2,6 +2,7 @@
 
 #include "core/assertion.h"
 #include "field/select_tiles.h"
+#include "field/solvation_law.h"
 
 #include <cmath>
 #include <cstddef>
@@ -155,15 +156,6 @@ NonbondedEnergy add_fast_pairs(const Topology& topology, const FastAtoms& atoms,
     return add_pairs_in_double(topology, settings, pairs.list, pairs.replaced, positions, forces);
 }
 
-PairScheme scheme_of(const NonbondedSettings& settings) noexcept {
-    return {settings.coulomb_constant / settings.dielectric,
-            settings.distance_dielectric,
-            settings.electrostatics,
-            settings.van_der_waals,
-            settings.switch_from,
-            settings.cutoff};
-}
-
 }  // namespace
 
 FastAtoms build_fast_atoms(const Topology& topology) {
@@ -182,8 +174,20 @@ FastAtoms build_fast_atoms(const Topology& topology) {
     return atoms;
 }
 
+PairScheme pair_scheme(const NonbondedSettings& settings) noexcept {
+    const bool is_solvated = settings.solvation == SolvationEnd::Smooth;
+    return {settings.coulomb_constant / settings.dielectric,
+            settings.distance_dielectric,
+            settings.electrostatics,
+            settings.van_der_waals,
+            settings.switch_from,
+            settings.cutoff,
+            is_solvated ? smooth_solvation_begin : 0,
+            is_solvated ? smooth_solvation_end : 0};
+}
+
 bool has_fast_form(const NonbondedSettings& settings) noexcept {
-    return settings.solvation != SolvationEnd::Sharp && has_kernel(scheme_of(settings));
+    return settings.solvation != SolvationEnd::Sharp && has_kernel(pair_scheme(settings));
 }
 
 NonbondedEnergy add_fast_nonbonded_forces(const Topology& topology, const FastAtoms& atoms,
@@ -214,7 +218,7 @@ std::optional<NonbondedEnergy> add_tile_forces(const Topology& topology,
                                                std::span<const Vec3> positions,
                                                std::span<Vec3> forces, PairResult result,
                                                const PairThreads& threads) {
-    const PairKernelSum sum = add_cluster_pair_forces(list, scheme_of(settings), positions,
+    const PairKernelSum sum = add_cluster_pair_forces(list, pair_scheme(settings), positions,
                                                       workspace, forces, result, threads);
     if (!sum.is_sound) return std::nullopt;
     const NonbondedEnergy added =

@@ -40,6 +40,9 @@ struct FastAtoms {
 
 FastAtoms build_fast_atoms(const Topology& topology);
 
+// The settings as kernels take them, with those of solvation where its end is smooth.
+PairScheme pair_scheme(const NonbondedSettings& settings) noexcept;
+
 // Whether they have kernels in single precision (field/pair_kernel.h): not the sharp end of
 // solvation, and of cutoffs those that scenes use.
 bool has_fast_form(const NonbondedSettings& settings) noexcept;

@@ -1,5 +1,6 @@
 #include "statics/fast_second_derivatives.h"
 
+#include "forces/fast_nonbonded.h"
 #include "forces/pair_hessian.h"
 
 #include <algorithm>
@@ -8,18 +9,6 @@
 
 namespace palpa {
 namespace {
-
-PairScheme scheme_of(const NonbondedSettings& settings) noexcept {
-    const bool is_solvated = settings.solvation == SolvationEnd::Smooth;
-    return {settings.coulomb_constant / settings.dielectric,
-            settings.distance_dielectric,
-            settings.electrostatics,
-            settings.van_der_waals,
-            settings.switch_from,
-            settings.cutoff,
-            is_solvated ? smooth_solvation_begin : 0,
-            is_solvated ? smooth_solvation_end : 0};
-}
 
 // One entry per atom; empty without solvation.
 class AllSolvation {
@@ -156,7 +145,7 @@ bool update_fast_second_derivatives(const TorsionModel& model, const LocalCoordi
         update_second_derivatives(model, coordinates, fast.paths, settings, state, derivatives);
         return false;
     };
-    const PairScheme scheme = scheme_of(settings);
+    const PairScheme scheme = pair_scheme(settings);
     if (!has_hessian_kernel(scheme) || settings.solvation == SolvationEnd::Sharp)
         return use_reference();
     const Vec3 origin = middle_of(state.positions);
