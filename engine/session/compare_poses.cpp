@@ -81,7 +81,7 @@ PoseComparison::PoseComparison(const World& world) {
         SymmetricAtoms symmetric = find_symmetries(atoms, side_chain);
         if (!symmetric.atoms.empty()) pocket_.push_back(std::move(symmetric));
     }
-    if (grip_of(world, hand).spring >= 0) {
+    if (!holds_whole(world, hand)) {
         frame_.clear();
         return;
     }

@@ -131,7 +131,7 @@ FeltStiffness stiffest_place(const SceneDescription& scene, const World& world,
     const Grip& grip = grip_of(world, hand);
     const ServoSettings servo = build_servo_settings(scene, world);
     FeltStiffness stiffest;
-    if (const Spring* const spring = spring_of(world, hand)) {
+    if (const ModelSpring* const spring = spring_of(world, hand)) {
         const double k = spring->k * units::newton_per_metre_per_kcal_per_mol_angstrom2;
         const double A_d = gain_where(servo, world, Vec3::Zero(), k * Mat3::Identity());
         return {force_gain(world.resource<Coupling>().laws.force, 0) * k / A_d,

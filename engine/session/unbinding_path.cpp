@@ -29,7 +29,7 @@ std::vector<std::size_t> find_heavy(const World& world, Entity hand) {
 
 Vec3 centre_of_held(const World& world) {
     const Entity hand = first_hand(world);
-    if (const Spring* const spring = spring_of(world, hand))
+    if (const ModelSpring* const spring = spring_of(world, hand))
         return find_centre_of_mass(model_of(world), spring->atoms,
                                    world.resource<TorsionState>().positions);
     return centre_of_mass(world.resource<AtomTable>(), held_range(world, hand));

@@ -113,7 +113,7 @@ void AccuracyController::lower() noexcept {
 Vec3 find_force_on_held(const TorsionModel& model, const TorsionState& state,
                         const HeldInState& held) noexcept {
     if (held.spring >= 0) {
-        const Spring& spring = state.springs[static_cast<std::size_t>(held.spring)];
+        const ModelSpring& spring = state.springs[static_cast<std::size_t>(held.spring)];
         return find_spring_force(model, spring, state.positions);
     }
     // What atoms of the molecule do to each other adds up to nothing.

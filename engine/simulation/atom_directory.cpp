@@ -57,12 +57,12 @@ std::string address_of(const AtomDirectory& directory, std::uint32_t atom, AtomS
 }
 
 std::string held_address(const World& world, Entity hand, const AtomDirectory& atoms) {
-    const Grip* const grip = world.find<Grip>(hand);
-    if (!grip) return {};
+    if (!world.find<Grip>(hand)) return {};
     const std::uint32_t first = held_range(world, hand).first;
-    if (grip->atoms.empty()) return address_of(atoms, first, AtomScope::Molecule);
-    return address_of(atoms, first + grip->atoms.front(),
-                      grip->atoms.size() == 1 ? AtomScope::Atom : AtomScope::Residue);
+    if (holds_whole(world, hand)) return address_of(atoms, first, AtomScope::Molecule);
+    const std::vector<std::uint32_t> held = held_part_of(world, hand).atoms;
+    return address_of(atoms, first + held.front(),
+                      held.size() == 1 ? AtomScope::Atom : AtomScope::Residue);
 }
 
 }  // namespace palpa

@@ -14,6 +14,9 @@ namespace palpa {
 inline constexpr double strongest_client_pull = 1e4 / units::piconewton_per_kcal_per_mol_angstrom;
 inline constexpr std::size_t most_client_pulls = 1000;
 
+// A component of the entity that owns the springs of clients.
+struct Clients {};
+
 // A resource of the world; without it no client applies a force.
 struct ClientPull {
     std::vector<std::uint32_t> atoms;  // indices into the atom table, each once

@@ -74,12 +74,10 @@ struct Hand {
     bool turns = false;            // the rotation of the handle turns rigid molecules
 };
 
-// What a hand holds and how it moves it. Positions are relative to `anchor`.
+// What a hand holds and how it moves it: a molecule as a whole, or some of its atoms by the Spring
+// of the hand's entity. Positions are relative to `anchor`.
 struct Grip {
     Entity molecule;
-    // Atoms held by a spring, counted from the molecule's first, and the spring's k (kcal/mol/Å^2).
-    std::vector<std::uint32_t> atoms;
-    double k = 0;
     Mobility before;  // mobility of the molecule before, restored when the hand releases it
     Entity measured_from;
     Vec3 anchor =
@@ -94,10 +92,8 @@ struct Grip {
     // the hand beside it.
     Vec3 line_origin = Vec3::Zero();  // Å
 
-    // Indices in the mechanics: the molecule of the torsion model, and the spring by which the hand
-    // pulls; -1: none.
-    std::int32_t base = -1, spring = -1;
-    bool is_new = true;  // its pose is not set yet; it will be that of the held molecule
+    std::int32_t base = -1;  // index of the molecule in the torsion model; -1: none
+    bool is_new = true;      // its pose is not set yet; it will be that of the held molecule
 };
 
 // Indices of atoms around the held molecule; ascending, but with smooth ends in the order of the
@@ -121,14 +117,18 @@ struct Contact {
 struct AtomsOf {
     Entity molecule;
     std::vector<std::uint32_t> atoms;
+
+    friend bool operator==(const AtomsOf&, const AtomsOf&) = default;
 };
 
-// A spring between the centres of mass of two groups of atoms, or from one to a fixed point.
-struct Restraint {
+// A spring between the centres of mass of two groups of atoms, or from one to a point:
+// E = k (distance - length)^2/2. It pulls at what is mobile; any number may pull at an atom.
+struct Spring {
     std::vector<AtomsOf> ends;  // one or two groups
-    Vec3 place = Vec3::Zero();  // Å, the fixed point with one group
+    Vec3 place = Vec3::Zero();  // Å, the point with one group
     double k = 0;               // kcal/mol/Å^2
-    double length = 0;          // Å
+    double length = 0;          // Å, at rest
+    Entity owner = {};  // a hand, the Clients, an entity of a user's system; none: a restraint
 };
 
 // A measurement: a label for one atom, a distance for two, an angle for three, a dihedral for four.

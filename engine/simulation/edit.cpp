@@ -162,7 +162,9 @@ void release(World& world, Entity hand) {
     const Grip* const held = world.find<Grip>(hand);
     if (!held) return;
     const Grip grip = *held;
+    const bool held_whole = holds_whole(world, hand);
     world.remove<Grip>(hand);
+    world.remove<Spring>(hand);
     take_hold_anew(world, hand);
     const Entity other = other_holder(world, hand, grip.molecule);
     Mobility& mobility = *world.find<Mobility>(grip.molecule);
@@ -170,7 +172,7 @@ void release(World& world, Entity hand) {
         mobility = grip.before;
         return;
     }
-    if (!grip.atoms.empty()) return;
+    if (!held_whole) return;
     mobility = grip.before;
     free_for_spring(mobility);
 }
@@ -187,10 +189,16 @@ Entity find_origin(const World& world, Entity molecule) {
     return origin == Entity{} ? molecule : origin;
 }
 
+// By a spring if `what` are atoms, of the stiffness that the scene has for it.
+void set_spring(World& world, Entity hand, const AtomsOf& what) {
+    if (what.atoms.empty()) return;
+    const double k = world.resource<SceneFile>().scene.grab.spring_kcal_per_mol_angstrom2;
+    world.set(hand, Spring{.ends = {what}, .k = k, .owner = hand});
+}
+
 Grip build_grip(const World& world, const AtomsOf& what) {
     Grip grip;
     grip.molecule = what.molecule;
-    grip.atoms = what.atoms;
     // What it may do while nobody holds it.
     const Entity other = other_holder(world, {}, what.molecule);
     grip.before =
@@ -207,7 +215,6 @@ Grip build_grip(const World& world, const AtomsOf& what) {
     grip.projector = Mat3::Identity();
     grip.freedom = 3;
     grip.is_new = false;
-    if (!is_whole) grip.k = world.resource<SceneFile>().scene.grab.spring_kcal_per_mol_angstrom2;
     return grip;
 }
 
@@ -258,8 +265,8 @@ bool names(std::span<const AtomsOf> atoms, Entity molecule) {
 // What names a molecule that goes.
 void forget(World& world, Entity molecule) {
     std::vector<Entity> gone;
-    world.each<Restraint>([&](Entity entity, const Restraint& restraint) {
-        if (names(restraint.ends, molecule)) gone.push_back(entity);
+    world.each<Spring>([&](Entity entity, const Spring& spring) {
+        if (names(spring.ends, molecule)) gone.push_back(entity);
     });
     world.each<Mark>([&](Entity entity, const Mark& mark) {
         if (names(mark.atoms, molecule)) gone.push_back(entity);
@@ -280,12 +287,13 @@ void take(World& world, Entity hand, const TakeEdit& edit) {
         if (find_remote_engine(changed)) {
             if (what.atoms.empty()) what.atoms = all_atoms_of(changed, what.molecule);
             changed.set(hand, build_grip(changed, what));
+            set_spring(changed, hand, what);
             take_hold_anew(changed, hand);
             return;
         }
         const bool is_whole = what.atoms.empty();
         const Entity other = other_holder(changed, hand, what.molecule);
-        if (is_whole && other != Entity{} && grip_of(changed, other).atoms.empty()) {
+        if (is_whole && other != Entity{} && holds_whole(changed, other)) {
             refuse(
                 fmt::format("the other hand holds '{}' as a whole; expected a residue or an "
                             "atom of it, as \"{}:25 CA\"",
@@ -303,6 +311,7 @@ void take(World& world, Entity hand, const TakeEdit& edit) {
         }
         if (needs_mechanics(changed) && is_whole) grip.pose.orientation = Quat::Identity();
         changed.set(hand, std::move(grip));
+        set_spring(changed, hand, what);
         take_hold_anew(changed, hand);
     });
 }
@@ -325,9 +334,9 @@ void put_back(World& world, Entity hand) {
         std::ranges::copy(*changed.find<StartPlaces>(grip->molecule)->atoms,
                           atoms.positions.begin() + molecule.atoms.first);
         check_room(atoms, molecule.atoms, molecule.name, "room where it was at the start");
-        const bool is_whole = grip->atoms.empty();
-        const Vec3 place = is_whole ? atoms.positions[molecule.reference_atom]
-                                    : middle_of(changed, {grip->molecule, grip->atoms});
+        const Vec3 place = holds_whole(changed, hand)
+                               ? atoms.positions[molecule.reference_atom]
+                               : middle_of(changed, held_part_of(changed, hand));
         grip->pose = {place - grip->anchor, Quat::Identity()};
         *changed.find<Pose>(grip->molecule) = {atoms.positions[molecule.reference_atom],
                                                Quat::Identity()};
@@ -391,16 +400,16 @@ void pin(World& world, const PinEdit& edit) {
 
 void add_restraint(World& world, const RestraintEdit& edit) {
     edit_whole(world, [&](World& changed) {
-        Restraint restraint;
+        Spring spring;
         for (const std::string& address : edit.atoms)
-            restraint.ends.push_back(find_some_atoms(changed, address));
+            spring.ends.push_back(find_some_atoms(changed, address));
         const bool has_place = edit.place_angstrom.has_value();
-        if (restraint.ends.size() != (has_place ? 1 : 2))
+        if (spring.ends.size() != (has_place ? 1 : 2))
             refuse("a restraint is between two atoms or residues, or from one to a place");
-        if (has_place) restraint.place = Vec3(edit.place_angstrom->data());
-        restraint.k = edit.k_kcal_per_mol_angstrom2;
-        restraint.length = edit.length_angstrom;
-        changed.set(changed.create(), std::move(restraint));
+        if (has_place) spring.place = Vec3(edit.place_angstrom->data());
+        spring.k = edit.k_kcal_per_mol_angstrom2;
+        spring.length = edit.length_angstrom;
+        changed.set(changed.create(), std::move(spring));
         if (!needs_mechanics(changed))
             refuse(
                 "a restraint has no effect, because no molecule moves by itself; expected a "

@@ -3,6 +3,7 @@
 #include "core/assertion.h"
 #include "core/text.h"
 #include "field/frozen_field.h"
+#include "simulation/systems/gather_springs.h"
 #include "simulation/systems/pull_by_clients.h"
 
 #include <algorithm>
@@ -22,11 +23,13 @@ Vec6 find_model_pull(const World& world, const SecondOrder& second, Entity hand)
 }
 
 // A base that the handle turns is turned as well.
-void move_mobile(World& world, const Grip& grip, const Vec3& by, const Quat& turn) noexcept {
+void move_mobile(World& world, Entity hand, const Vec3& by, const Quat& turn) noexcept {
+    const Grip& grip = grip_of(world, hand);
     const TorsionModel& model = model_of(world);
     TorsionState& state = world.resource<TorsionState>();
-    if (grip.spring >= 0) {
-        state.springs[static_cast<std::size_t>(grip.spring)].place += by;
+    if (const std::optional<std::size_t> index = find_spring_index(world, hand)) {
+        state.springs[*index].place += by;
+        world.find<Spring>(hand)->place = state.springs[*index].place;
         return;
     }
     const auto base = static_cast<std::size_t>(grip.base);
@@ -42,7 +45,23 @@ void move_mobile(World& world, const Grip& grip, const Vec3& by, const Quat& tur
 
 }  // namespace
 
-bool is_mobile(const Grip& grip) noexcept { return grip.base >= 0 || grip.spring >= 0; }
+bool is_mobile(const World& world, Entity hand) noexcept {
+    return grip_of(world, hand).base >= 0 || find_spring_index(world, hand);
+}
+
+bool holds_whole(const World& world, Entity hand) noexcept { return !world.find<Spring>(hand); }
+
+AtomsOf held_part_of(const World& world, Entity hand) {
+    if (const Spring* const spring = world.find<Spring>(hand)) return spring->ends.front();
+    const Entity molecule = grip_of(world, hand).molecule;
+    return {molecule, all_atoms_of(world, molecule)};
+}
+
+HeldInState held_in_state(const World& world, Entity hand) noexcept {
+    const std::optional<std::size_t> index = find_spring_index(world, hand);
+    return {static_cast<std::uint32_t>(grip_of(world, hand).base),
+            index ? static_cast<std::int32_t>(*index) : -1};
+}
 
 std::vector<Entity> find_hands(const World& world) {
     std::vector<Entity> hands;
@@ -85,14 +104,13 @@ AtomRange held_range(const World& world, Entity hand) noexcept {
     return grip ? world.find<Molecule>(grip->molecule)->atoms : AtomRange{};
 }
 
-const Spring* spring_of(const World& world, Entity hand) noexcept {
-    const Grip* const grip = world.find<Grip>(hand);
-    if (!grip || grip->spring < 0) return nullptr;
-    return &world.resource<TorsionState>().springs[static_cast<std::size_t>(grip->spring)];
+const ModelSpring* spring_of(const World& world, Entity hand) noexcept {
+    const std::optional<std::size_t> index = find_spring_index(world, hand);
+    return index ? &world.resource<TorsionState>().springs[*index] : nullptr;
 }
 
 std::vector<std::uint32_t> held_atoms(const World& world, Entity hand) {
-    if (const Spring* const spring = spring_of(world, hand)) {
+    if (const ModelSpring* const spring = spring_of(world, hand)) {
         std::vector<std::uint32_t> atoms = spring->atoms;
         for (std::uint32_t& atom : atoms) atom = model_atoms_of(world).number_in_table(atom);
         return atoms;
@@ -149,7 +167,7 @@ std::vector<std::uint32_t> atoms_called(const World& world, Entity molecule,
 
 Vec3 held_place(const World& world, Entity hand) noexcept {
     const Grip& grip = grip_of(world, hand);
-    if (const Spring* const spring = spring_of(world, hand)) return spring->place;
+    if (const ModelSpring* const spring = spring_of(world, hand)) return spring->place;
     if (grip.base >= 0) {
         const std::uint32_t pivot =
             model_of(world).bases[static_cast<std::size_t>(grip.base)].pivot;
@@ -164,8 +182,8 @@ void place_held(World& world, Entity hand, const MoleculePose& pose) noexcept {
     const Quat turned = (pose.orientation * grip.pose.orientation.conjugate()).normalized();
     grip.pose = pose;
     const Vec3 reference = grip.anchor + pose.place_angstrom;
-    if (is_mobile(grip)) {
-        move_mobile(world, grip, reference - held_place(world, hand), turned);
+    if (is_mobile(world, hand)) {
+        move_mobile(world, hand, reference - held_place(world, hand), turned);
         copy_positions(world);
         return;
     }
@@ -267,7 +285,7 @@ FieldSum field_on(const World& world, Entity hand, const FieldPoints& group) {
 
 bool has_fast_pairs(const World& world, Entity hand) noexcept {
     const Grip* const grip = world.find<Grip>(hand);
-    return grip && !is_mobile(*grip) &&
+    return grip && !is_mobile(world, hand) &&
            world.resource<Interactions>().precision == PairPrecision::Fast &&
            held_range(world, hand).count * count_environment(world, hand) >= fewest_fast_pairs;
 }
@@ -321,14 +339,14 @@ std::size_t find_active_freedom(const World& world) noexcept {
 
 Vec3 find_force_on_held(const World& world, Entity hand) noexcept {
     const Grip* const grip = world.find<Grip>(hand);
-    if (!grip || !is_mobile(*grip) || !has_mobile(world)) return Vec3::Zero();
+    if (!grip || !is_mobile(world, hand) || !has_mobile(world)) return Vec3::Zero();
     const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
-    if (adaptive && grip->spring < 0)
+    if (adaptive && !spring_of(world, hand))
         return find_wrench_on(adaptive->statics, static_cast<std::size_t>(grip->base)).tail<3>();
     if (const SecondOrder* const second = find_second_order(world))
         return find_model_pull(world, *second, hand).tail<3>();
     return find_force_on_held(model_of(world), world.resource<TorsionState>(),
-                              {static_cast<std::uint32_t>(grip->base), grip->spring});
+                              held_in_state(world, hand));
 }
 
 Vec6 find_pull_on_held(const World& world, Entity hand) noexcept {

@@ -24,14 +24,20 @@ const Contact& contact_of(const World& world, Entity hand) noexcept;
 const LocalContactModel& local_contact_of(const World& world) noexcept;
 LocalContactModel& local_contact_of(World& world) noexcept;
 
-// True if it holds a part of the mechanics, false for a rigid molecule outside of them.
-bool is_mobile(const Grip& grip) noexcept;
+// True if the hand holds a part of the mechanics, false for a rigid molecule outside of them.
+bool is_mobile(const World& world, Entity hand) noexcept;
+// True if it holds a molecule as a whole, false for atoms at a spring.
+bool holds_whole(const World& world, Entity hand) noexcept;
+// The atoms at its spring, or all of the molecule.
+AtomsOf held_part_of(const World& world, Entity hand);
+// What it holds in the mechanics.
+HeldInState held_in_state(const World& world, Entity hand) noexcept;
 
 // Atoms of the molecule that a hand holds, as a whole or at a spring; empty if it holds nothing.
 AtomRange held_range(const World& world, Entity hand) noexcept;
 // The spring of the hand, with atom numbers of the model; null if it holds a molecule as a whole,
 // or nothing.
-const Spring* spring_of(const World& world, Entity hand) noexcept;
+const ModelSpring* spring_of(const World& world, Entity hand) noexcept;
 // The held atoms: those at its spring, or all of the molecule.
 std::vector<std::uint32_t> held_atoms(const World& world, Entity hand);
 

@@ -150,7 +150,7 @@ void start_grabbed(const SceneDescription& scene, const HandTables& tables, Enti
     const Molecule& grabbed = *world.find<Molecule>(grip.molecule);
     const Molecule& origin = *world.find<Molecule>(grip.measured_from);
     const bool on_line = grip.freedom == 1;
-    const bool is_rigid = !is_mobile(grip);
+    const bool is_rigid = !is_mobile(world, hand);
     if (!on_line && is_rigid) relax_grabbed(scene, tables, hand, world);
 
     grip.anchor = world.resource<AtomTable>().positions[origin.reference_atom];
@@ -193,16 +193,30 @@ void add_anchors(const SceneDescription& scene, const MoleculeDescription& molec
     const TextPlace place = scene.place_of(fmt::format("molecules.{}.anchors", molecule.name));
     const Entity entity = molecule_called(world, molecule.name);
     for (const std::string& name : molecule.anchors) {
-        Restraint restraint;
-        restraint.ends.push_back({entity, find_named_atoms(world, entity, name, place)});
-        restraint.place = middle_of(world, restraint.ends.front());
-        restraint.k = molecule.anchor_kcal_per_mol_angstrom2;
-        world.set(world.create(), std::move(restraint));
+        Spring spring;
+        spring.ends.push_back({entity, find_named_atoms(world, entity, name, place)});
+        spring.place = middle_of(world, spring.ends.front());
+        spring.k = molecule.anchor_kcal_per_mol_angstrom2;
+        world.set(world.create(), std::move(spring));
     }
 }
 
+// Atoms that the hand holds by a spring at first; none if it holds the molecule as a whole.
+AtomsOf find_part_at_first(const SceneDescription& scene, const HandTables& tables,
+                           const World& world) {
+    AtomsOf part{molecule_called(world, tables.grab.molecule), {}};
+    if (!tables.grab.atom.empty()) {
+        part.atoms = find_named_atoms(world, part.molecule, tables.grab.atom,
+                                      scene.place_of(tables.grab_key + ".atom"));
+    } else if (scene.engine) {
+        part.atoms = all_atoms_of(world, part.molecule);
+    }
+    return part;
+}
+
 // What the hand holds at first, and how it moves it.
-Grip build_grip(const SceneDescription& scene, const HandTables& tables, const World& world) {
+Grip build_grip(const SceneDescription& scene, const HandTables& tables, bool is_whole,
+                const World& world) {
     const GrabDescription& grab = tables.grab;
     Grip grip;
     grip.molecule = molecule_called(world, grab.molecule);
@@ -210,16 +224,7 @@ Grip build_grip(const SceneDescription& scene, const HandTables& tables, const W
         molecule_called(world, grab.measured_from.empty() ? grab.molecule : grab.measured_from);
     const Mobility& mobility = *world.find<Mobility>(grip.molecule);
     grip.before = mobility;
-    if (!grab.atom.empty()) {
-        grip.atoms = find_named_atoms(world, grip.molecule, grab.atom,
-                                      scene.place_of(tables.grab_key + ".atom"));
-        grip.k = grab.spring_kcal_per_mol_angstrom2;
-    } else if (scene.engine) {
-        grip.atoms = all_atoms_of(world, grip.molecule);
-        grip.k = grab.spring_kcal_per_mol_angstrom2;
-    } else {
-        grip.before.motion = scene.has_statics() ? Motion::Free : Motion::Fixed;
-    }
+    if (is_whole) grip.before.motion = scene.has_statics() ? Motion::Free : Motion::Fixed;
     if (mobility.motion == Motion::AlongX && !scene.engine) return grip;
     grip.freedom = mobility.motion == Motion::WithHandle && !scene.engine ? 6 : 3;
     grip.projector = Mat3::Identity();
@@ -229,12 +234,14 @@ Grip build_grip(const SceneDescription& scene, const HandTables& tables, const W
 // They take hold in the order of their devices.
 void add_hands(const SceneDescription& scene, World& world) {
     for (const HandTables& tables : list_hands(scene)) {
-        Grip grip = build_grip(scene, tables, world);
-        world.each<Grip>([&](Entity, Grip& other) {
+        AtomsOf part = find_part_at_first(scene, tables, world);
+        const bool is_whole = part.atoms.empty();
+        Grip grip = build_grip(scene, tables, is_whole, world);
+        world.each<Grip>([&](Entity holder, Grip& other) {
             if (other.molecule != grip.molecule) return;
             // Who holds it as a whole knows what it is without hands.
-            (grip.atoms.empty() ? other : grip).before = (grip.atoms.empty() ? grip : other).before;
-            if (!other.atoms.empty() || !grip.atoms.empty()) return;
+            (is_whole ? other : grip).before = (is_whole ? grip : other).before;
+            if (!holds_whole(world, holder) || !is_whole) return;
             throw LoadError(scene.place_of(tables.grab_key + ".molecule"),
                             fmt::format("both hands hold '{0}' as a whole; expected another "
                                         "molecule, or one of them to hold an atom or a residue of "
@@ -244,6 +251,10 @@ void add_hands(const SceneDescription& scene, World& world) {
         const Entity hand = world.create();
         world.set(hand, Hand{.turns = grip.freedom == 6});
         world.set(hand, grip);
+        if (!is_whole) {
+            const double k = tables.grab.spring_kcal_per_mol_angstrom2;
+            world.set(hand, Spring{.ends = {std::move(part)}, .k = k, .owner = hand});
+        }
         world.set(hand, Contact{});
     }
 }
@@ -266,6 +277,7 @@ World read_world(const SceneDescription& scene, const StageFunction& on_stage) {
     world.set_resource(BondedTerms{});
     world.set_resource(Mechanics{});
     world.set_resource(TorsionState{});
+    world.set_resource(GatheredSprings{});
     world.set_resource(StartReport{});
     world.set_resource(StepReport{});
 

@@ -11,6 +11,7 @@
 #include "simulation/remote_engine.h"
 #include "simulation/solvent.h"
 #include "simulation/systems/choose_active.h"
+#include "simulation/systems/gather_springs.h"
 #include "simulation/systems/relax.h"
 
 #include <fmt/format.h>
@@ -260,43 +261,6 @@ void fix_held(std::span<const HeldPart> held, TorsionModel& model) {
     fix_bases(is_fixed, model);
 }
 
-// ---- springs ---------------------------------------------------------------------------------
-
-// By the model's numbers.
-std::vector<std::uint32_t> model_numbers_of(const World& world, const ModelAtoms& atoms,
-                                            const AtomsOf& of) {
-    std::vector<std::uint32_t> numbers = numbers_of(world, of);
-    for (std::uint32_t& number : numbers) number = atoms.in_model(number).value();
-    return numbers;
-}
-
-// Of a hand, from the middle of what it holds.
-Spring build_spring(const World& world, const ModelAtoms& atoms, const Grip& grip) {
-    Spring spring;
-    spring.k = grip.k;
-    spring.atoms = model_numbers_of(world, atoms, {grip.molecule, grip.atoms});
-    return spring;
-}
-
-Spring build_spring(const World& world, const ModelAtoms& atoms, const Restraint& restraint) {
-    Spring spring;
-    spring.k = restraint.k;
-    spring.length = restraint.length;
-    spring.place = restraint.place;
-    spring.atoms = model_numbers_of(world, atoms, restraint.ends.front());
-    if (restraint.ends.size() > 1)
-        spring.other_atoms = model_numbers_of(world, atoms, restraint.ends.back());
-    return spring;
-}
-
-std::vector<Spring> build_restraints(const World& world, const ModelAtoms& atoms) {
-    std::vector<Spring> springs;
-    world.each<Restraint>([&](Entity, const Restraint& restraint) {
-        springs.push_back(build_spring(world, atoms, restraint));
-    });
-    return springs;
-}
-
 // ---- settings --------------------------------------------------------------------------------
 
 RelaxSettings build_settings(const SceneDescription& scene) {
@@ -393,11 +357,11 @@ HeldParts find_held_parts(const World& world, std::vector<Entity>& hands) {
     const TorsionModel& model = model_of(world);
     HeldParts held;
     world.each<Grip>([&](Entity hand, const Grip& grip) {
-        if (!is_mobile(grip)) return;
+        if (!is_mobile(world, hand)) return;
         HandHold hold;
         hold.molecule = static_cast<std::uint32_t>(grip.base);
-        if (grip.spring >= 0) hold.spring = static_cast<std::size_t>(grip.spring);
-        hold.turns = grip.spring < 0 && grip.freedom == 6;
+        hold.spring = find_spring_index(world, hand);
+        hold.turns = !hold.spring && grip.freedom == 6;
         held.hands.push_back(hold);
         hands.push_back(hand);
         add_held_atoms(model, world.resource<TorsionState>(), hold, held.atoms);
@@ -522,13 +486,13 @@ std::vector<HeldPart> find_held(const World& world, const Plan& plan) {
         const bool is_first = hand == first_hand(world);
         const Molecule& molecule = *world.find<Molecule>(grip.molecule);
         HeldPart& part = held.emplace_back();
-        if (grip.atoms.empty()) {
+        if (const Spring* const spring = world.find<Spring>(hand)) {
+            part.base = piece_of(molecule.atoms.first + spring->ends.front().atoms.front());
+            part.spring = find_model_spring(world, plan.atoms, *spring);
+        } else {
             part.base = piece_of(molecule.reference_atom);
             check_one_piece(scene.place_of(is_first ? "grab.molecule" : "second.grab.molecule"),
                             molecule, piece_of);
-        } else {
-            part.base = piece_of(molecule.atoms.first + grip.atoms.front());
-            part.spring = build_spring(world, plan.atoms, grip);
         }
     });
     return held;
@@ -557,19 +521,14 @@ void set_mechanics(const SceneDescription& scene, TorsionModel model, ModelAtoms
     fix_held(held, model);
     TorsionState state = build_torsion_state(model);
     std::size_t next = 0;
-    world.each<Grip>([&](Entity, Grip& grip) {
+    world.each<Grip>([&](Entity hand, Grip& grip) {
         const HeldPart& part = held[next++];
         grip.base = static_cast<std::int32_t>(part.base);
-        grip.spring = -1;
         if (!part.spring) return;
-        grip.spring = static_cast<std::int32_t>(state.springs.size());
-        state.springs.push_back(*part.spring);
-        state.springs.back().place =
+        world.find<Spring>(hand)->place =
             grip.is_new ? find_centre_of_mass(model, part.spring->atoms, state.positions)
                         : Vec3(grip.anchor + grip.pose.place_angstrom);
     });
-    for (Spring& spring : build_restraints(world, atoms))
-        state.springs.push_back(std::move(spring));
     world.remove_resource<AdaptiveState>();
     world.remove_resource<SecondOrder>();
     world.remove_resource<ErrorEstimate>();
@@ -581,6 +540,7 @@ void set_mechanics(const SceneDescription& scene, TorsionModel model, ModelAtoms
     world.set_resource(std::move(state));
     world.set_resource(Mechanics{std::make_shared<const TorsionModel>(std::move(model)),
                                  std::make_shared<const ModelAtoms>(std::move(atoms))});
+    gather_springs(world, {});
     if (settings.method == RelaxMethod::SecondOrder) {
         SecondOrder second = build_second_order(scene.statics, settings, world);
         if (const auto within_pN = scene.coupling.feel_within_pN)
@@ -611,11 +571,12 @@ void check_segments(const World& world) {
 void clear_mechanics(World& world) {
     world.set_resource(Mechanics{});
     world.set_resource(TorsionState{});
+    world.set_resource(GatheredSprings{});
     world.remove_resource<Solver>();
     world.remove_resource<AdaptiveState>();
     world.remove_resource<SecondOrder>();
     world.remove_resource<ErrorEstimate>();
-    world.each<Grip>([](Entity, Grip& grip) { grip.base = grip.spring = -1; });
+    world.each<Grip>([](Entity, Grip& grip) { grip.base = -1; });
 }
 
 }  // namespace
@@ -627,7 +588,7 @@ bool needs_mechanics(const World& world) {
         needs = needs || mobility.shape == Shape::Flexible || mobility.motion == Motion::Free ||
                 mobility.motion == Motion::TranslateAndTurn;
     });
-    world.each<Grip>([&](Entity, const Grip& grip) { needs = needs || !grip.atoms.empty(); });
+    world.each<Grip, Spring>([&](Entity, const Grip&, const Spring&) { needs = true; });
     return needs;
 }
 
@@ -720,7 +681,11 @@ void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_rel
     }
     const TorsionModel loose = build_model(world, plan, std::move(bases));
     TorsionState rest = build_torsion_state(loose);
-    rest.springs = build_restraints(world, plan.atoms);
+    world.each<Spring>([&](Entity hand, const Spring& spring) {
+        if (world.find<Grip>(hand)) return;
+        if (auto found = find_model_spring(world, plan.atoms, spring))
+            rest.springs.push_back(std::move(*found));
+    });
     QuasiStatics statics = build_quasi_statics(loose);
     RelaxSettings to_rest;
     to_rest.step.forces = build_settings(scene).step.forces;
@@ -746,10 +711,22 @@ World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
     World world;
     const Entity hand = world.create();
     world.set(hand, Hand{});
-    world.set(hand, Grip{});
+    const Entity all = world.create();
+    world.set(all, Molecule{"", {0, static_cast<std::uint32_t>(model.reference.size())}});
+    Grip grip;
+    grip.molecule = all;
+    world.set(hand, grip);
+    if (held.spring) {
+        Spring spring;
+        spring.ends = {{all, held.spring->atoms}};
+        spring.k = held.spring->k;
+        spring.owner = hand;
+        world.set(hand, std::move(spring));
+    }
     AtomTable atoms;
     atoms.positions = model.reference;
     world.set_resource(std::move(atoms));
+    world.set_resource(GatheredSprings{});
     world.set_resource(Clock{scene.period_ms * 1e-3});  // a renewal is due after a time
     StartReport report;
     report.joints = model.tree.bodies.joints();
@@ -765,8 +742,8 @@ void start_mechanics(World& world) {
     Solver& solver = world.resource<Solver>();
     if (AdaptiveState* const adaptive = world.find_resource<AdaptiveState>()) {
         prepare_choice(world);
-        world.each<Grip>([&](Entity, const Grip& grip) {
-            if (grip.base >= 0 && grip.spring < 0)
+        world.each<Grip>([&](Entity hand, const Grip& grip) {
+            if (grip.base >= 0 && holds_whole(world, hand))
                 adaptive->statics.is_guided[static_cast<std::size_t>(grip.base)] = 1;
         });
         // The first step reports what is not finite.
@@ -803,13 +780,15 @@ void put_state(World& world, const TorsionState& state) {
         second->statics = build_second_order_statics(model_of(world), std::move(held));
     }
     update_positions(model_of(world), world.resource<TorsionState>());
+    return_ends(world);
     start_mechanics(world);
 }
 
 HeldPart held_part(const World& world) {
     const Grip& grip = grip_of(world, first_hand(world));
     HeldPart held{static_cast<std::uint32_t>(grip.base), {}};
-    if (const Spring* const spring = spring_of(world, first_hand(world))) held.spring = *spring;
+    if (const ModelSpring* const spring = spring_of(world, first_hand(world)))
+        held.spring = *spring;
     return held;
 }
 

@@ -45,7 +45,7 @@ void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_rel
 // it pulls.
 struct HeldPart {
     std::uint32_t base = 0;
-    std::optional<Spring> spring = {};
+    std::optional<ModelSpring> spring = {};
 };
 
 // A world for measurements: a model at rest at its reference positions, moved as the scene's

@@ -32,7 +32,7 @@ void find_error(World& world) {
     ErrorEstimate* const estimate = world.find_resource<ErrorEstimate>();
     const Entity hand = first_hand(world);
     const Grip* const grip = world.find<Grip>(hand);
-    if (!estimate || !grip || !is_mobile(*grip)) return;
+    if (!estimate || !grip || !is_mobile(world, hand)) return;
     const TorsionModel& model = model_of(world);
     if (!estimate->memory) {
         estimate->memory = {build_lineariser(model, estimate->held), build_quasi_statics(model),
@@ -45,8 +45,8 @@ void find_error(World& world) {
     const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
     const Vec3 felt =
         adaptive && adaptive->rendered ? *adaptive->rendered : find_force_on_held(world, hand);
-    const Vec3 found = find_force_on_held(model_of(world), rest.linear->at,
-                                          {static_cast<std::uint32_t>(grip->base), grip->spring});
+    const Vec3 found =
+        find_force_on_held(model_of(world), rest.linear->at, held_in_state(world, hand));
     constexpr double pN = units::piconewton_per_kcal_per_mol_angstrom;
     estimate->last_pN = pN * (felt - found).norm();
     estimate->felt_pN = pN * felt;

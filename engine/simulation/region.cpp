@@ -34,19 +34,11 @@ private:
     double radius_ = 0;
 };
 
-AtomsOf what_is_held(const World& world, const Grip& grip) {
-    AtomsOf held{grip.molecule, grip.atoms};
-    const std::uint32_t count = world.find<Molecule>(grip.molecule)->atoms.count;
-    for (std::uint32_t i = 0; held.atoms.size() < count && grip.atoms.empty(); ++i)
-        held.atoms.push_back(i);
-    return held;
-}
-
 // The table's numbers of what hands hold, or held last of what there is still.
 std::vector<std::uint32_t> update_centre(World& world) {
     RegionCentre centre;
     world.each<Grip>(
-        [&](Entity, const Grip& grip) { centre.parts.push_back(what_is_held(world, grip)); });
+        [&](Entity hand, const Grip&) { centre.parts.push_back(held_part_of(world, hand)); });
     if (centre.parts.empty()) {
         if (const RegionCentre* const last = world.find_resource<RegionCentre>()) centre = *last;
         std::erase_if(centre.parts, [&](const AtomsOf& part) {
@@ -100,8 +92,9 @@ std::optional<Region> find_region(World& world) {
     if (inside.empty()) return region;
     std::vector<std::uint8_t> is_needed = region.is_inside;
     for (const std::uint32_t i : held) is_needed[i] = 1;
-    world.each<Restraint>([&](Entity, const Restraint& restraint) {
-        for (const AtomsOf& end : restraint.ends) {
+    world.each<Spring>([&](Entity, const Spring& spring) {
+        if (spring.owner != Entity{}) return;
+        for (const AtomsOf& end : spring.ends) {
             for (const std::uint32_t i : numbers_of(world, end)) is_needed[i] = 1;
         }
     });

@@ -275,7 +275,7 @@ EngineSpring find_engine_spring(const World& world, Entity hand) noexcept {
     if (!hold.is_live) return {};
     const double most = 1e-9 * world.resource<RemoteEngine>().settings.most_force_nN /
                         units::newton_per_kcal_per_mol_angstrom;
-    return find_engine_spring(grip_of(world, hand).k, hold.smoothed - held_place(world, hand),
+    return find_engine_spring(world.find<Spring>(hand)->k, hold.smoothed - held_place(world, hand),
                               most);
 }
 
@@ -368,7 +368,6 @@ void set_remote_engine(const SceneDescription& scene, World& world) {
 
 void hold_engine_atoms(World& world) {
     const AtomTable& table = world.resource<AtomTable>();
-    TorsionState state;
     std::vector<Entity> free;
     world.each<Hand>([&](Entity hand, const Hand&) {
         if (!world.find<Grip>(hand)) free.push_back(hand);
@@ -378,21 +377,18 @@ void hold_engine_atoms(World& world) {
     }
     std::vector<std::pair<Entity, EngineHold>> holds;
     world.each<Grip>([&](Entity hand, Grip& grip) {
-        std::vector<std::uint32_t> atoms = numbers_of(world, AtomsOf{grip.molecule, grip.atoms});
+        std::vector<std::uint32_t> atoms = numbers_of(world, held_part_of(world, hand));
         const EngineHold* const before = world.find<EngineHold>(hand);
         const bool is_same = before && before->atoms == atoms;
         holds.emplace_back(hand, is_same ? *before : build_hold(table, std::move(atoms)));
         const EngineHold& hold = holds.back().second;
-        Spring spring;
-        spring.atoms = hold.atoms;
-        spring.k = grip.k;
-        spring.place = is_same ? Vec3(grip.anchor + grip.pose.place_angstrom) : hold.smoothed;
+        world.find<Spring>(hand)->place =
+            is_same ? Vec3(grip.anchor + grip.pose.place_angstrom) : hold.smoothed;
         grip.base = -1;
-        grip.spring = static_cast<std::int32_t>(state.springs.size());
-        state.springs.push_back(std::move(spring));
     });
     for (auto& [hand, hold] : holds) world.set(hand, std::move(hold));
-    world.set_resource(std::move(state));
+    world.set_resource(TorsionState{});
+    gather_springs(world, {});
 }
 
 bool take_newest_frame(World& world) {

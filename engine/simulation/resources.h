@@ -93,6 +93,11 @@ struct Mechanics {
     std::shared_ptr<const ModelAtoms> atoms = std::make_shared<const ModelAtoms>();
 };
 
+// The entity of each spring in the TorsionState, ascending.
+struct GatheredSprings {
+    std::vector<Entity> entities;
+};
+
 // How mobile parts are relaxed.
 struct Solver {
     RelaxSettings settings;  // for every step

@@ -7,6 +7,7 @@
 #include "simulation/systems/choose_active.h"
 #include "simulation/systems/follow_engine.h"
 #include "simulation/systems/follow_hands.h"
+#include "simulation/systems/gather_springs.h"
 #include "simulation/systems/measure.h"
 #include "simulation/systems/play_trajectory.h"
 #include "simulation/systems/publish_contact.h"
@@ -15,6 +16,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace palpa {
@@ -27,6 +29,7 @@ constexpr System systems[] = {
     play_trajectory,  // the frame that is due, where one is played
     follow_hands,     // device poses to poses of what is held, and ends of springs
     pull_by_clients,  // forces of clients to ends of springs
+    gather_springs,   // springs of all owners to the mechanics
     choose_active,    // which joints and bases move
     relax,            // these towards rest
     follow_engine,    // or all atoms where a remote engine has them
@@ -37,21 +40,29 @@ constexpr System systems[] = {
 // What a step may change, as it was.
 struct Before {
     std::vector<MoleculePose> grips;
+    std::vector<std::pair<Entity, Vec3>> ends;
     MobileCoordinates mobile;
 };
 
 Before remember(const World& world) {
-    Before before{{}, save_mobile(world)};
+    Before before{{}, {}, save_mobile(world)};
+    world.each<Spring>([&](Entity entity, const Spring& spring) {
+        before.ends.emplace_back(entity, spring.place);
+    });
     world.each<Grip>([&](Entity, const Grip& grip) { before.grips.push_back(grip.pose); });
     return before;
 }
 
 void go_back(const Before& before, World& world) {
     restore_mobile(before.mobile, world);
+    for (const auto& [entity, place] : before.ends) {
+        if (Spring* const spring = world.find<Spring>(entity)) spring->place = place;
+    }
+    gather_springs(world, {});
     std::size_t next = 0;
     world.each<Grip>([&](Entity hand, Grip& grip) {
         const MoleculePose& pose = before.grips[next++];
-        if (is_mobile(grip)) {
+        if (is_mobile(world, hand)) {
             grip.pose = pose;  // its place is one of those coordinates
         } else {
             place_held(world, hand, pose);

@@ -78,7 +78,7 @@ template <class Visit>
 double visit_spring_forces(const TorsionModel& model, const TorsionState& state,
                            const Visit& visit) {
     double energy = 0;
-    for (const Spring& spring : state.springs) {
+    for (const ModelSpring& spring : state.springs) {
         const SpringPull pull = find_spring_pull(model, spring, state.positions);
         const Vec3 force = -pull.k * pull.stretch;
         visit_pulled(model, spring,

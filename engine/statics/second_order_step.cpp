@@ -265,7 +265,7 @@ private:
 
     // Springs that no hand moves may be others than the model knows: then it is made anew.
     bool place_with_springs() {
-        std::vector<Spring> springs = state_.springs;
+        std::vector<ModelSpring> springs = state_.springs;
         place();
         for (const HandHold& hand : hands()) {
             if (hand.spring && *hand.spring < springs.size())

@@ -13,13 +13,13 @@ Vec3 find_centre_of_mass(const TorsionModel& model, std::span<const std::uint32_
     return sum / mass;
 }
 
-Vec3 find_other_end(const TorsionModel& model, const Spring& spring,
+Vec3 find_other_end(const TorsionModel& model, const ModelSpring& spring,
                     std::span<const Vec3> positions) noexcept {
     if (spring.other_atoms.empty()) return spring.place;
     return find_centre_of_mass(model, spring.other_atoms, positions);
 }
 
-SpringPull find_spring_pull(const TorsionModel& model, const Spring& spring,
+SpringPull find_spring_pull(const TorsionModel& model, const ModelSpring& spring,
                             std::span<const Vec3> positions) noexcept {
     const Vec3 stretch = find_centre_of_mass(model, spring.atoms, positions) -
                          find_other_end(model, spring, positions);
@@ -29,13 +29,13 @@ SpringPull find_spring_pull(const TorsionModel& model, const Spring& spring,
     return {stretch, k, 0.5 * spring.k * longer * longer};
 }
 
-Vec3 find_spring_force(const TorsionModel& model, const Spring& spring,
+Vec3 find_spring_force(const TorsionModel& model, const ModelSpring& spring,
                        std::span<const Vec3> positions) noexcept {
     const SpringPull pull = find_spring_pull(model, spring, positions);
     return pull.k * pull.stretch;
 }
 
-Mat3 find_spring_stiffness(const TorsionModel& model, const Spring& spring,
+Mat3 find_spring_stiffness(const TorsionModel& model, const ModelSpring& spring,
                            std::span<const Vec3> positions) noexcept {
     const SpringPull pull = find_spring_pull(model, spring, positions);
     if (spring.length == 0) return spring.k * Mat3::Identity();
@@ -45,7 +45,7 @@ Mat3 find_spring_stiffness(const TorsionModel& model, const Spring& spring,
     return pull.k * Mat3::Identity() + (spring.k - pull.k) * along * along.transpose();
 }
 
-double add_spring_forces(const TorsionModel& model, const Spring& spring,
+double add_spring_forces(const TorsionModel& model, const ModelSpring& spring,
                          std::span<const Vec3> positions, std::span<Vec3> forces) noexcept {
     const SpringPull pull = find_spring_pull(model, spring, positions);
     visit_pulled(model, spring, [&](std::uint32_t atom, double share) {

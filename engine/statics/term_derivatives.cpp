@@ -144,7 +144,7 @@ public:
     }
 
     // A spring's vector is that from one centre of mass to another, or to a place.
-    void add_spring(const Spring& spring, std::span<const LocalCoordinates::SpringEnd> ends) {
+    void add_spring(const ModelSpring& spring, std::span<const LocalCoordinates::SpringEnd> ends) {
         const SpringPull pull = find_spring_pull(model_, spring, state_.positions);
         TermHessian<1> term;
         term.gradient = pull.k * pull.stretch;
@@ -181,7 +181,7 @@ private:
         Vec3 moment = Vec3::Zero();  // sum of share times place
     };
 
-    std::map<std::uint32_t, Moved> find_moved(const Spring& spring) const {
+    std::map<std::uint32_t, Moved> find_moved(const ModelSpring& spring) const {
         std::map<std::uint32_t, Moved> result;
         const TorsionBodies& bodies = model_.tree.bodies;
         visit_pulled(model_, spring, [&](std::uint32_t atom, double share) {

@@ -130,7 +130,7 @@ void update_forces(const TorsionModel& model, const ForceSettings& settings, For
     std::ranges::fill(state.forces, Vec3::Zero());
     state.terms = add_model_forces(model, settings, memory, state.positions, state.forces);
     state.spring_energy = 0;
-    for (const Spring& spring : state.springs) {
+    for (const ModelSpring& spring : state.springs) {
         state.spring_energy += add_spring_forces(model, spring, state.positions, state.forces);
     }
     ++memory.evaluations;

@@ -36,7 +36,7 @@ struct TorsionState {
     std::vector<double> angles;             // angle of each body's joint, rad; 0 for bases
     std::vector<Eigen::Quaterniond> turns;  // of each molecule
     std::vector<Vec3> shifts;               // of each molecule, Å
-    std::vector<Spring> springs;            // set by the caller: springs of hands and restraints
+    std::vector<ModelSpring> springs;       // set by the caller: springs of hands and restraints
 
     // update_positions
     std::vector<RigidMotion> motions;  // motion of each body from its reference

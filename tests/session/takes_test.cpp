@@ -36,11 +36,12 @@ Vec3 true_force(const World& world, Entity hand, const MoleculePose& pose) {
     place_held(there, hand, pose);
     const Grip& grip = grip_of(there, hand);
     Vec3 force;
-    if (grip.atoms.empty()) {
+    const Spring* const spring = there.find<Spring>(hand);
+    if (!spring) {
         force = grip.projector * field_on_held(there, hand).force;
     } else {
         const Vec3 end = grip.anchor + pose.place_angstrom;
-        force = grip.k * (middle_of(there, {grip.molecule, grip.atoms}) - end);
+        force = spring->k * (middle_of(there, spring->ends.front()) - end);
     }
     return units::newton_per_kcal_per_mol_angstrom * force;
 }
@@ -49,10 +50,10 @@ Vec3 true_force(const World& world, Entity hand, const MoleculePose& pose) {
 Vec3 pull_of_other(const World& world, Entity hand) {
     Vec3 force = Vec3::Zero();
     const Grip& grip = grip_of(world, hand);
-    world.each<Grip>([&](Entity other, const Grip& pulling) {
-        if (other == hand || pulling.molecule != grip.molecule || !grip.atoms.empty()) return;
+    world.each<Grip, Spring>([&](Entity other, const Grip& pulling, const Spring& spring) {
+        if (other == hand || pulling.molecule != grip.molecule || !holds_whole(world, hand)) return;
         const Vec3 end = pulling.anchor + pulling.pose.place_angstrom;
-        force += pulling.k * (end - middle_of(world, {pulling.molecule, pulling.atoms}));
+        force += spring.k * (end - middle_of(world, spring.ends.front()));
     });
     return units::newton_per_kcal_per_mol_angstrom * force;
 }

@@ -47,8 +47,7 @@ Vec3 relaxed_force(const World& world) {
     settings.steps = 20000;
     QuasiStatics statics = build_quasi_statics(model);
     (void)relax_joints(model, settings, state, statics);
-    const Grip& grip = grip_of(world, first_hand(world));
-    return find_force_on_held(model, state, {static_cast<std::uint32_t>(grip.base), grip.spring});
+    return find_force_on_held(model, state, held_in_state(world, first_hand(world)));
 }
 
 // The hand goes 2 Å towards the other molecule, and stays.

@@ -687,10 +687,8 @@ TEST_CASE(
 
     const MoleculePose kept = grip_of(world, hand).pose;
     const TorsionState state = world.resource<TorsionState>();
-    Spring broken;
-    broken.atoms = {0};
-    broken.k = std::numeric_limits<double>::quiet_NaN();
-    world.resource<TorsionState>().springs.push_back(broken);
+    world.set(world.create(), Spring{.ends = {{grip_of(world, hand).molecule, {0}}},
+                                     .k = std::numeric_limits<double>::quiet_NaN()});
     pose.molecule->place_angstrom += Vec3(0.5, 0.7, 0.1);
     pose.molecule->orientation = turn * pose.molecule->orientation;
     CHECK_FALSE(step_world(world, pose, local_contact_of(world).model).finite);

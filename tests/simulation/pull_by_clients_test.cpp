@@ -107,7 +107,7 @@ TEST_CASE("a force of a client stays what it is however far its atom goes", "[cl
         CHECK(z >= last);
         const TorsionState& state = world.resource<TorsionState>();
         Vec3 sum = Vec3::Zero();
-        for (const Spring& spring : state.springs)
+        for (const ModelSpring& spring : state.springs)
             sum += find_spring_force(model_of(world), spring, state.positions);
         // This step has moved it since the ends were placed, 100 Å before it.
         CHECK((sum + force).norm() < (slack + (z - last) / 100 + 1e-3) * force.norm());

@@ -268,7 +268,7 @@ TEST_CASE("a step by second order in a region is that of the whole model",
 
     const auto step = [&](const TorsionModel& of, const ModelAtoms& numbers) {
         TorsionState state = build_torsion_state(of);
-        Spring spring = *spring_of(world, first_hand(world));
+        ModelSpring spring = *spring_of(world, first_hand(world));
         for (std::uint32_t& atom : spring.atoms) {
             const std::uint32_t in_table = atoms.number_in_table(atom);
             atom = numbers.in_model(in_table).value();
@@ -312,8 +312,7 @@ TEST_CASE("outside of the region nothing moves by a bit, and chains stay closed"
         REQUIRE(table.names[atom].number == "50");
         REQUIRE(table.names[atom].segment == "B");
     }
-    const AtomsOf residue{grip_of(world, first_hand(world)).molecule,
-                          grip_of(world, first_hand(world)).atoms};
+    const AtomsOf residue = held_part_of(world, first_hand(world));
     const Vec3 start = middle_of(world, residue);
     for (int i = 0; i < 20; ++i) pull(world, Vec3(0, 0.1, 0));
     CHECK((middle_of(world, residue) - start).y() > 0.5);

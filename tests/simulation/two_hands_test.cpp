@@ -216,7 +216,7 @@ TEST_CASE("two hands pull at one molecule by two springs", "[simulation][second]
     REQUIRE(world.resource<TorsionState>().springs.size() == 2);
     CHECK(spring_of(world, first)->atoms != spring_of(world, second)->atoms);
     const auto length = [&](Entity hand) {
-        const Spring& spring = *spring_of(world, hand);
+        const ModelSpring& spring = *spring_of(world, hand);
         return (spring.place - world.resource<AtomTable>().positions[spring.atoms[0]]).norm();
     };
     Poses poses = poses_of(world);
@@ -236,7 +236,7 @@ TEST_CASE("two hands pull at one molecule by two springs", "[simulation][second]
     CHECK(now > apart + 1.5);
     // What pulls at a hand is its own spring.
     for (const Entity hand : {first, second}) {
-        const Spring& spring = *spring_of(world, hand);
+        const ModelSpring& spring = *spring_of(world, hand);
         const Vec3 stretch = world.resource<AtomTable>().positions[spring.atoms[0]] - spring.place;
         CHECK(relative(find_force_on_held(world, hand), spring.k * stretch) < 1e-9);
     }
@@ -307,7 +307,9 @@ TEST_CASE(
         poses[0].place_angstrom += Vec3(-0.1, 0.02, 0.04);
         poses[1].place_angstrom += Vec3(0.04, 0.1, -0.06);
         step_to(two, poses);
-        one.resource<TorsionState>().springs.front().place = spring_of(two, second)->place;
+        one.each<Spring>([&, place = spring_of(two, second)->place](Entity, Spring& spring) {
+            spring.place = place;
+        });
         HandPose hand;
         hand.molecule = poses[0];
         REQUIRE(step_world(one, hand, local_contact_of(one).model).finite);

@@ -163,7 +163,7 @@ TEST_CASE("work where something moves agrees with work on everything", "[statics
     for (int i = 0; i < 60; ++i) {
         if (i % 3 == 0) {
             const Vec3 by(0.02, i < 30 ? 0.01 : -0.04, 0);
-            for (Spring& spring : state.springs) spring.place += by;
+            for (ModelSpring& spring : state.springs) spring.place += by;
             if (bases[0] == Turning) shift_base(model, 0, by, state, statics);
             CHECK(update_adaptive_forces(model, settings, state, statics));
         }

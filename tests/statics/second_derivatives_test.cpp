@@ -148,7 +148,7 @@ TEST_CASE("second derivatives have the cutoff that the energy has", "[statics][h
         }
         return true;
     };
-    const std::vector<Spring> springs = c.state.springs;
+    const std::vector<ModelSpring> springs = c.state.springs;
     for (std::uint32_t seed = 1; !is_clear() && seed < 200; ++seed) {
         c.state = test::state_after(c.model, 0.1, seed);
         c.state.springs = springs;

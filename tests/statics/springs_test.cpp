@@ -21,7 +21,7 @@ using enum BaseFreedom;
 constexpr std::uint32_t second = 62;  // the first atom of the second peptide
 
 // To a place and between atoms, of one molecule and of two, with a length and without.
-std::vector<Spring> springs_of_all_kinds() {
+std::vector<ModelSpring> springs_of_all_kinds() {
     return {{{8, 20, 47}, 15, {1, -2, 20}},
             {{50}, 20, {3, 5, 1}, {}, 4},
             {{5, 6}, 12, Vec3::Zero(), {second + 30}},
@@ -36,7 +36,7 @@ double find_slope(double h, const EnergyAt& energy_at) {
 }
 
 // The distance between weighted means, by hand.
-double distance_of(const TorsionModel& model, const Spring& spring,
+double distance_of(const TorsionModel& model, const ModelSpring& spring,
                    const std::vector<Vec3>& positions) {
     const auto mean = [&](const std::vector<std::uint32_t>& atoms) {
         Vec3 moment = Vec3::Zero();
@@ -60,9 +60,9 @@ TEST_CASE("the stiffness of a spring is how its force falls with its other end",
     const TorsionState state = build_torsion_state(model);
     const Vec3 from = find_centre_of_mass(model, std::vector<std::uint32_t>{1, 3}, state.positions);
     const double length = GENERATE(0.0, 2.0, 7.0);
-    Spring spring{{1, 3}, 15, from + Vec3(3, -2, 1.5), {}, length};
+    ModelSpring spring{{1, 3}, 15, from + Vec3(3, -2, 1.5), {}, length};
     const auto force_at = [&](const Vec3& by) {
-        Spring moved = spring;
+        ModelSpring moved = spring;
         moved.place += by;
         return find_spring_force(model, moved, state.positions);
     };
@@ -91,7 +91,7 @@ TEST_CASE("a spring pulls at the centre of mass of its atoms", "[statics][spring
 
     update_forces(model, {}, memory, state);
 
-    const Spring& spring = state.springs.front();
+    const ModelSpring& spring = state.springs.front();
     const Vec3 centre = 0.25 * c.positions[1] + 0.75 * c.positions[3];
     CHECK((find_centre_of_mass(model, spring.atoms, state.positions) - centre).norm() < 1e-14);
     CHECK(state.spring_energy == Approx(5 * (centre - place).squaredNorm()));
@@ -139,7 +139,7 @@ TEST_CASE("a spring between atoms pulls both ends, to its length", "[statics][sp
 TEST_CASE("forces of springs are the slopes of their energies", "[statics][springs]") {
     auto [model, state] = test::peptide_pair({Turning, Free});
     const std::size_t kind = GENERATE(range<std::size_t>(0, 5));
-    const Spring spring = springs_of_all_kinds()[kind];
+    const ModelSpring spring = springs_of_all_kinds()[kind];
     INFO("spring " << kind);
     std::vector<Vec3> forces(state.positions.size(), Vec3::Zero());
     std::vector<Vec3> positions = state.positions;
@@ -167,7 +167,7 @@ TEST_CASE("forces of springs are the slopes of their energies", "[statics][sprin
     const Vec3 pull = find_spring_force(model, spring, positions);
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
         const double slope = find_slope(1e-3, [&](double by) {
-            Spring there = spring;
+            ModelSpring there = spring;
             there.place[axis] += by;
             return find_spring_pull(model, there, positions).energy;
         });
@@ -179,7 +179,7 @@ TEST_CASE("springs pull along the coordinates by the slopes of their energies",
           "[statics][springs]") {
     const auto bases = GENERATE(std::array{Turning, Free}, std::array{Free, Held});
     auto [model, state] = test::peptide_pair(bases);
-    const std::vector<Spring> springs = springs_of_all_kinds();
+    const std::vector<ModelSpring> springs = springs_of_all_kinds();
     const std::size_t kind = GENERATE(range<std::size_t>(0, 6));
     INFO("spring " << kind << ", or all");
     const auto energy_of = [&](const TorsionState& there) {
@@ -198,7 +198,7 @@ TEST_CASE("springs pull along the coordinates by the slopes of their energies",
     update_forces(model, {}, memory, without);
     update_coordinate_forces(model, without);
     state.springs =
-        kind < springs.size() ? std::vector<Spring>{springs[kind]} : springs_of_all_kinds();
+        kind < springs.size() ? std::vector<ModelSpring>{springs[kind]} : springs_of_all_kinds();
 
     update_forces(model, {}, memory, state);
     update_coordinate_forces(model, state);
@@ -287,7 +287,7 @@ TEST_CASE("two hands pull a molecule to where both springs are as long as they w
         }
     }
 
-    for (const Spring& spring : state.springs) {
+    for (const ModelSpring& spring : state.springs) {
         CHECK(distance_of(model, spring, state.positions) < 0.3);
     }
 }

@@ -43,7 +43,7 @@ public:
     }
     Bytes& operator<<(Entity entity) { return *this << entity.number; }
     Bytes& operator<<(const AtomsOf& atoms) { return *this << atoms.molecule << atoms.atoms; }
-    Bytes& operator<<(const Spring& s) {
+    Bytes& operator<<(const ModelSpring& s) {
         return *this << s.atoms << s.k << s.place << s.other_atoms << s.length;
     }
     Bytes& operator<<(const ReplacedPair& p) { return *this << p.a << p.b << p.epsilon << p.rmin; }
@@ -78,8 +78,8 @@ void add_atoms(const World& world, Bytes& bytes) {
         });
     world.each<RigidShape>(
         [&](Entity entity, const RigidShape& shape) { bytes << entity << shape.atoms; });
-    world.each<Restraint>([&](Entity entity, const Restraint& r) {
-        bytes << entity << r.ends << r.place << r.k << r.length;
+    world.each<Spring>([&](Entity entity, const Spring& s) {
+        bytes << entity << s.ends << s.place << s.k << s.length << s.owner;
     });
     world.each<Mark>([&](Entity entity, const Mark& mark) { bytes << entity << mark.atoms; });
     world.each<Appearance>([&](Entity entity, const Appearance& a) {
@@ -89,10 +89,9 @@ void add_atoms(const World& world, Bytes& bytes) {
 
 void add_hands(const World& world, Bytes& bytes) {
     world.each<Grip>([&](Entity hand, const Grip& grip) {
-        bytes << hand << grip.molecule << grip.atoms << grip.k << grip.measured_from << grip.anchor
-              << grip.freedom << grip.pose.place_angstrom << grip.pose.orientation
-              << grip.line_origin << grip.base << grip.spring << grip.before.motion
-              << grip.before.shape << grip.projector << grip.is_new;
+        bytes << hand << grip.molecule << grip.measured_from << grip.anchor << grip.freedom
+              << grip.pose.place_angstrom << grip.pose.orientation << grip.line_origin << grip.base
+              << grip.before.motion << grip.before.shape << grip.projector << grip.is_new;
     });
     world.each<Contact>([&](Entity hand, const Contact& held) {
         const ContactModel& contact = held.answer.model;

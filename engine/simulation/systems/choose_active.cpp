@@ -24,7 +24,7 @@ Vec3 find_centre(const World& world, std::size_t molecule) {
 
 // What a hand holds: the atoms at its spring, or a molecule as large as it was at the last choice.
 Ball find_ball(const World& world, Entity hand, const AdaptiveState& adaptive) {
-    if (const Spring* const spring = spring_of(world, hand)) {
+    if (const ModelSpring* const spring = spring_of(world, hand)) {
         const std::vector<Vec3>& positions = world.resource<TorsionState>().positions;
         return {find_centre_of_mass(model_of(world), spring->atoms, positions), 0};
     }
@@ -36,7 +36,7 @@ Ball find_ball(const World& world, Entity hand, const AdaptiveState& adaptive) {
 std::vector<Ball> find_balls(const World& world, const AdaptiveState& adaptive) {
     std::vector<Ball> balls;
     world.each<Grip>([&](Entity hand, const Grip& grip) {
-        if (grip.base < 0 || (!adaptive.statics.is_built && grip.spring < 0)) return;
+        if (grip.base < 0 || (!adaptive.statics.is_built && holds_whole(world, hand))) return;
         balls.push_back(find_ball(world, hand, adaptive));
     });
     return balls;

@@ -26,8 +26,8 @@ void hold_anew(World& world, Entity hand, EngineHold& hold) {
     hold.smoothed = hold.middle;
     hold.is_live = true;
     grip.pose.place_angstrom = hold.middle - grip.anchor;
-    world.resource<TorsionState>().springs[static_cast<std::size_t>(grip.spring)].place =
-        hold.middle;
+    world.find<Spring>(hand)->place = hold.middle;
+    gather_springs(world, {});
     ++world.find<Contact>(hand)->answer.model.start;
 }
 

@@ -48,8 +48,7 @@ std::vector<OtherHeld> list_others(const World& world, Entity hand) {
     std::size_t slot = 0;
     world.each<Hand>([&](Entity other, const Hand&) {
         const Grip* const grip = world.find<Grip>(other);
-        if (grip && grip->atoms.empty() && grip->spring < 0 &&
-            grip->molecule != grip_of(world, hand).molecule)
+        if (grip && holds_whole(world, other) && grip->molecule != grip_of(world, hand).molecule)
             others.push_back({other, slot, held_range(world, other)});
         ++slot;
     });
@@ -197,7 +196,7 @@ struct Pull {
 };
 
 // A hand on a spring feels the spring.
-Pull find_pull_of(const World& world, const Spring& spring) {
+Pull find_pull_of(const World& world, const ModelSpring& spring) {
     const TorsionState& state = world.resource<TorsionState>();
     Pull pull;
     pull.force = find_spring_force(model_of(world), spring, state.positions);
@@ -266,8 +265,9 @@ ContactModel build_model(const World& world, Entity hand, const HandPose& pose, 
 }
 
 // Whether the servo, or the stiffness, needs the atoms around what is held.
-bool needs_field(const World& world, const Grip& grip) noexcept {
-    return grip.spring < 0 && (world.resource<Coupling>().is_guarded || grip.base >= 0);
+bool needs_field(const World& world, Entity hand) noexcept {
+    return holds_whole(world, hand) &&
+           (world.resource<Coupling>().is_guarded || grip_of(world, hand).base >= 0);
 }
 
 // The share of what was foretold that came, 0 to 1, or nothing where too little was.
@@ -349,11 +349,11 @@ LocalContactModel build_local_contact(const World& world, Entity hand, const Han
         contact.model.is_still = !hold->is_live;
         return contact;
     }
-    if (const Spring* const spring = spring_of(world, hand)) {
+    if (const ModelSpring* const spring = spring_of(world, hand)) {
         contact.model = build_model(world, hand, pose, find_pull_of(world, *spring));
         return contact;
     }
-    if (needs_field(world, grip_of(world, hand))) contact.field = build_local_field(world, hand);
+    if (needs_field(world, hand)) contact.field = build_local_field(world, hand);
     contact.field.centre = centre_of_mass(world.resource<AtomTable>(), held_range(world, hand));
     contact.field.pivot = held_place(world, hand);
     for (const Vec3& place : contact.field.group)
@@ -365,7 +365,7 @@ LocalContactModel build_local_contact(const World& world, Entity hand, const Han
 
 void update_near(World& world, Entity hand) {
     const Grip& grip = grip_of(world, hand);
-    if (!needs_field(world, grip)) return;
+    if (!needs_field(world, hand)) return;
     constexpr double moved = 0.5;        // Å
     constexpr std::size_t rarely = 500;  // steps
     NearAtoms& near = world.find<Contact>(hand)->near;

@@ -3,6 +3,7 @@
 #include "simulation/client_pull.h"
 #include "simulation/held.h"
 #include "simulation/resources.h"
+#include "simulation/systems/gather_springs.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -16,14 +17,6 @@ namespace {
 
 constexpr double client_spring = 100;  // Å, from an atom to the end that pulls at it
 
-// Springs of hands and restraints, which stand before those of clients.
-std::size_t count_own_springs(const World& world) noexcept {
-    std::size_t own = 0;
-    world.each<Grip>([&](Entity, const Grip& grip) { own += grip.spring >= 0 ? 1 : 0; });
-    world.each<Restraint>([&](Entity, const Restraint&) { ++own; });
-    return std::min(own, world.resource<TorsionState>().springs.size());
-}
-
 const ClientPull* find_client_pull(const World& world) noexcept {
     const ClientPull* const pull = world.find_resource<ClientPull>();
     return pull && pull->of == world.resource<AtomTable>().size() ? pull : nullptr;
@@ -36,62 +29,74 @@ std::optional<std::uint32_t> find_pulled_atom(const World& world, std::uint32_t 
     if (!atom || !std::ranges::binary_search(model.mobile_atoms, *atom)) return {};
     const auto molecule = model.tree.molecule_of[model.tree.bodies.body_of[*atom]];
     bool is_in_hand = false;
-    world.each<Grip>([&](Entity, const Grip& grip) {
-        is_in_hand |= grip.spring < 0 && grip.base == static_cast<std::int32_t>(molecule);
+    world.each<Grip>([&](Entity hand, const Grip& grip) {
+        is_in_hand |= holds_whole(world, hand) && grip.base == static_cast<std::int32_t>(molecule);
     });
     if (is_in_hand) return {};
     return atom;
 }
 
+// An address of an atom as springs have it.
+AtomsOf find_address(const World& world, std::uint32_t in_table) {
+    AtomsOf address;
+    world.each<Molecule>([&](Entity entity, const Molecule& molecule) {
+        if (has_atom(molecule.atoms, in_table))
+            address = {entity, {in_table - molecule.atoms.first}};
+    });
+    return address;
+}
+
 // The end stays ahead of the atom, so that the force hardly depends on its way.
-Spring build_client_spring(std::uint32_t atom, const Vec3& place, const Vec3& force) {
+Spring build_client_spring(AtomsOf atom, const Vec3& place, const Vec3& force, Entity owner) {
     Spring spring;
-    spring.atoms = {atom};
+    spring.ends.push_back(std::move(atom));
     spring.k = force.norm() / client_spring;
     spring.place = place + force.normalized() * client_spring;
+    spring.owner = owner;
     return spring;
 }
 
 }  // namespace
 
 void pull_by_clients(World& world, const StepInput& /*input*/) {
-    if (!world.find_resource<ClientPull>() || !has_mobile(world)) return;
-    TorsionState& state = world.resource<TorsionState>();
-    const auto first =
-        state.springs.begin() + static_cast<std::ptrdiff_t>(count_own_springs(world));
-    const std::vector<Spring> before(std::make_move_iterator(first),
-                                     std::make_move_iterator(state.springs.end()));
-    state.springs.erase(first, state.springs.end());
-    const ClientPull* const pull = find_client_pull(world);
-    if (!pull) return;
-    const double slack = world.find_resource<SecondOrder>() ? 0.02 : 0;
+    if (!world.find_resource<ClientPull>() && find_owner<Clients>(world) == Entity{}) return;
+    const Entity clients = make_owner<Clients>(world);
+    const std::vector<Entity> before = find_springs(world, clients);
     std::size_t next = 0;
-    for (std::size_t i = 0; i < pull->atoms.size(); ++i) {
-        const Vec3& force = pull->forces[i];
-        const std::optional<std::uint32_t> atom = find_pulled_atom(world, pull->atoms[i]);
-        if (!atom || force.isZero(0)) continue;
-        const Vec3& place = state.positions[*atom];
-        Spring spring = build_client_spring(*atom, place, force);
-        if (next < before.size() && before[next].atoms == spring.atoms &&
-            (before[next].k * (before[next].place - place) - force).norm() < slack * force.norm())
-            spring = before[next];
-        state.springs.push_back(std::move(spring));
-        ++next;
+    const ClientPull* const pull = find_client_pull(world);
+    if (pull && has_mobile(world)) {
+        const double slack = world.find_resource<SecondOrder>() ? 0.02 : 0;
+        for (std::size_t i = 0; i < pull->atoms.size(); ++i) {
+            const Vec3& force = pull->forces[i];
+            const std::optional<std::uint32_t> atom = find_pulled_atom(world, pull->atoms[i]);
+            if (!atom || force.isZero(0)) continue;
+            const Vec3& place = world.resource<TorsionState>().positions[*atom];
+            const AtomsOf address = find_address(world, pull->atoms[i]);
+            const Entity entity = next < before.size() ? before[next] : world.create();
+            const Spring* const old = world.find<Spring>(entity);
+            ++next;
+            if (old && old->ends.front() == address &&
+                (old->k * (old->place - place) - force).norm() < slack * force.norm())
+                continue;
+            world.set(entity, build_client_spring(address, place, force, clients));
+        }
     }
+    for (; next < before.size(); ++next) world.destroy(before[next]);
 }
 
 bool is_pulled_by_clients(const World& world) noexcept {
-    return has_mobile(world) && world.find_resource<ClientPull>() &&
-           world.resource<TorsionState>().springs.size() > count_own_springs(world);
+    const Entity clients = find_owner<Clients>(world);
+    bool is_pulled = false;
+    world.each<Spring>([&](Entity entity, const Spring& spring) {
+        is_pulled |= clients != Entity{} && spring.owner == clients &&
+                     find_spring_index(world, entity).has_value();
+    });
+    return is_pulled;
 }
 
 double find_client_energy(const World& world) noexcept {
-    if (!is_pulled_by_clients(world)) return 0;
-    const TorsionState& state = world.resource<TorsionState>();
-    double energy = 0;
-    for (std::size_t i = count_own_springs(world); i < state.springs.size(); ++i)
-        energy += find_spring_pull(model_of(world), state.springs[i], state.positions).energy;
-    return energy;
+    const Entity clients = find_owner<Clients>(world);
+    return clients == Entity{} ? 0 : find_spring_energy(world, clients);
 }
 
 std::size_t count_pulls_without_effect(const World& world) noexcept {

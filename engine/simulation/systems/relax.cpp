@@ -4,6 +4,7 @@
 #include "core/units.h"
 #include "simulation/held.h"
 #include "simulation/systems/choose_active.h"
+#include "simulation/systems/gather_springs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -84,7 +85,7 @@ std::vector<MoleculePose> find_places(const World& world, const SecondOrder& sec
     for (const Entity hand : second.hands) {
         const Grip& grip = grip_of(world, hand);
         places.push_back({held_place(world, hand), Quat::Identity()});
-        if (grip.base >= 0 && grip.spring < 0)
+        if (grip.base >= 0 && holds_whole(world, hand))
             places.back().orientation =
                 world.resource<TorsionState>().turns[static_cast<std::size_t>(grip.base)];
     }
@@ -163,9 +164,12 @@ void relax(World& world, const StepInput& input) {
 }
 
 RelaxStepReport relax_mobile(World& world, const StepInput& input) {
-    if (AdaptiveState* const adaptive = world.find_resource<AdaptiveState>())
-        return relax_active(world, *adaptive);
-    return follow_by_second_order(world, input, world.resource<SecondOrder>());
+    AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    RelaxStepReport report =
+        adaptive ? relax_active(world, *adaptive)
+                 : follow_by_second_order(world, input, world.resource<SecondOrder>());
+    return_ends(world);
+    return report;
 }
 
 MobileCoordinates save_mobile(const World& world) {

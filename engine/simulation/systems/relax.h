@@ -19,7 +19,7 @@ struct MobileCoordinates {
     std::vector<double> angles;
     std::vector<Quat> turns;
     std::vector<Vec3> shifts;
-    std::vector<Spring> springs;
+    std::vector<ModelSpring> springs;
 };
 
 MobileCoordinates save_mobile(const World& world);

@@ -4,6 +4,9 @@
 
 namespace palpa {
 
+// A component of the entity that owns the wind's springs.
+struct Wind {};
+
 // Pushes every water that moves by itself and that no hand holds along x.
 void blow_wind(World& world, const StepInput& input);
 

@@ -1,21 +1,31 @@
 // A system of 30 lines is one file and one line in the list of the step: this program has the
 // engine's own step.cpp with that line.
+#include "tests/simulation/wind/wind.h"
+
 #include "core/files.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "scene/read_scene.h"
+#include "simulation/client_pull.h"
 #include "simulation/edit.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/molecules.h"
+#include "simulation/resources.h"
 #include "simulation/step.h"
+#include "simulation/systems/gather_springs.h"
+#include "simulation/systems/pull_by_clients.h"
 #include "tests/support/paths.h"
 #include "tests/support/water_scene.h"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 using namespace palpa;
 
@@ -39,6 +49,32 @@ Vec3 centre_of(const World& world, const std::string& molecule) {
 void step(World& world, int steps) {
     for (int i = 0; i < steps; ++i)
         REQUIRE(step_world(world, HandPose{}, local_contact_of(world).model).finite);
+}
+
+Entity add_free(World& world, const std::string& name, const std::array<double, 3>& place) {
+    add_molecule(world, {"TIP3", "", name, place});
+    set_mobility(world, {name, Motion::Free, {}});
+    return molecule_called(world, name);
+}
+
+// On each atom by its mass, so that the molecule does not turn.
+ClientPull pull_at_all(const World& world, Entity molecule, const Vec3& force) {
+    const AtomTable& table = world.resource<AtomTable>();
+    const AtomRange range = world.find<Molecule>(molecule)->atoms;
+    ClientPull pull{{}, {}, table.size()};
+    double mass = 0;
+    for (std::uint32_t i = 0; i < range.count; ++i) mass += table.mass[range.first + i];
+    for (std::uint32_t i = 0; i < range.count; ++i) {
+        pull.atoms.push_back(range.first + i);
+        pull.forces.emplace_back(table.mass[range.first + i] / mass * force);
+    }
+    return pull;
+}
+
+void step_both(World& world) {
+    std::array<HandPose, 2> poses;
+    std::array<ContactModel, 2> felt;
+    REQUIRE(step_world(world, {poses, felt}).finite);
 }
 
 }  // namespace
@@ -114,4 +150,77 @@ TEST_CASE("edits and undo find the wind as it was", "[wind]") {
     const double before = centre_of(world, "free").x();
     step(world, 20);
     CHECK(centre_of(world, "free").x() > before + 0.01);
+}
+
+namespace {
+
+// A component of the entity that owns the springs of a gust along y.
+struct Gust {};
+
+void blow_gust(World& world, Entity water, double force) {
+    constexpr double k = 0.02;
+    const Entity gust = make_owner<Gust>(world);
+    for (const Entity spring : find_springs(world, gust)) world.destroy(spring);
+    const AtomsOf atoms{water, all_atoms_of(world, water)};
+    const Vec3 end = middle_of(world, atoms) + Vec3(0, force / k, 0);
+    world.set(world.create(), Spring{{atoms}, end, k, 0, gust});
+}
+
+}  // namespace
+
+TEST_CASE("two winds, a client and two hands pull at once, each with its own force", "[wind]") {
+    const std::string method = GENERATE("quasi-static", "second-order");
+    CAPTURE(method);
+    const std::vector<std::string> settings{"statics.method=" + method};
+    World world = load_world(read_scene(test::in_project("scenes/water/two-hands.toml"), settings));
+    // Three waters far from each other: the winds and the client pull at one, each hand holds
+    // another.
+    const Entity free = add_free(world, "free", {0, 0, 60});
+    add_free(world, "one", {0, 60, 0});
+    add_free(world, "other", {0, -60, 0});
+    const std::vector<Entity> hands = find_hands(world);
+    take(world, hands[0], {"one:1"});
+    take(world, hands[1], {"other:1"});
+    const Vec3 start = centre_of(world, "free");
+    constexpr double k = 2, gust = 0.7, client = 1.1;
+    add_restraint(world, {{"free:1"}, {{start.x(), start.y(), start.z()}}, k, 0});
+    world.set_resource(pull_at_all(world, free, {0, 0, client}));
+    std::array<Vec3, 2> ends{};
+    for (std::size_t i = 0; i < 2; ++i) ends[i] = held_place(world, hands[i]);
+    for (int i = 0; i < 600; ++i) {
+        blow_gust(world, free, gust);
+        step_both(world);
+    }
+    // The restraint holds against all three.
+    const Vec3 moved = centre_of(world, "free") - start;
+    CHECK((moved - Vec3(wind, gust, client) / k).norm() < 0.03);
+    // The hands hold theirs against the wind alone.
+    for (std::size_t i = 0; i < 2; ++i) {
+        const Vec3 felt = contact_of(world, hands[i]).answer.model.force_newton;
+        CHECK(held_place(world, hands[i]) == ends[i]);
+        CHECK(felt.norm() < 0.03 * wind * units::newton_per_kcal_per_mol_angstrom);
+    }
+    // Each owner has its own springs, and their energy.
+    // The wind pulls at the scene's waters too, which stay where they are.
+    std::size_t waters = 0;
+    world.each<Molecule>([&](Entity, const Molecule&) { ++waters; });
+    waters -= hands.size();
+    CHECK(find_springs(world, find_owner<Wind>(world)).size() == waters);
+    CHECK(find_springs(world, find_owner<Gust>(world)).size() == 1);
+    CHECK(find_springs(world, find_owner<Clients>(world)).size() == 3);
+    CHECK(find_springs(world, Entity{}).size() == 1);
+    CHECK(find_spring_energy(world, Entity{}) == Approx(k * moved.squaredNorm() / 2));
+    CHECK(find_spring_energy(world, find_owner<Wind>(world)) ==
+          Approx(static_cast<double>(waters) * wind * wind / 0.01 / 2).epsilon(0.05));
+    CHECK(find_spring_energy(world, find_owner<Gust>(world)) ==
+          Approx(gust * gust / 0.02 / 2).epsilon(0.05));
+    CHECK(find_client_energy(world) == Approx(client * 100 / 2).epsilon(0.05));
+    // Without the client the others go on.
+    world.set_resource(ClientPull{{}, {}, world.resource<AtomTable>().size()});
+    for (int i = 0; i < 600; ++i) {
+        blow_gust(world, free, gust);
+        step_both(world);
+    }
+    CHECK_FALSE(is_pulled_by_clients(world));
+    CHECK((centre_of(world, "free") - start - Vec3(wind, gust, 0) / k).norm() < 0.03);
 }

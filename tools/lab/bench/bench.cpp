@@ -50,8 +50,7 @@ namespace {
 // What a step says of the force with what the first hand holds at `distance` along its line; of
 // what moves by itself, what rigid molecules would feel there. kcal/mol/Å.
 double find_step_force(World& world, double distance) {
-    if (is_mobile(grip_of(world, first_hand(world))))
-        return force_along_line_at(world, distance).force;
+    if (is_mobile(world, first_hand(world))) return force_along_line_at(world, distance).force;
     move_grabbed(world, distance);
     return build_local_contact(world, first_hand(world), {}).model.force_newton.x() /
            units::newton_per_kcal_per_mol_angstrom;

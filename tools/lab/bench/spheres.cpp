@@ -43,7 +43,7 @@ std::uint32_t find_centre(const SceneDescription& scene, const Connectivity& con
 
 // A sphere with its middle residue on the hand's spring.
 World build_sphere(const SceneDescription& scene, const CutSystem& sphere, const AtomName& middle) {
-    Spring spring;
+    ModelSpring spring;
     spring.k = scene.grab.spring_kcal_per_mol_angstrom2;
     for (std::uint32_t i = 0; i < sphere.connectivity.names.size(); ++i) {
         if (is_residue(sphere.connectivity.names[i], middle)) spring.atoms.push_back(i);

@@ -61,7 +61,7 @@ RestPose rest_pose_of(const Truth& truth, const RestStart& start) {
                   .shifts = start.state.shifts,
                   .springs = {},
                   .moves = start.moves};
-    for (const Spring& spring : start.state.springs) pose.springs.push_back(spring.place);
+    for (const ModelSpring& spring : start.state.springs) pose.springs.push_back(spring.place);
     return pose;
 }
 
