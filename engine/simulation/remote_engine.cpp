@@ -13,6 +13,7 @@
 #include "simulation/held.h"
 #include "simulation/resources.h"
 #include "simulation/sources.h"
+#include "simulation/systems/gather_springs.h"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -5,6 +5,7 @@
 #include "simulation/held.h"
 #include "simulation/remote_engine.h"
 #include "simulation/resources.h"
+#include "simulation/systems/gather_springs.h"
 #include "simulation/systems/publish_contact.h"
 
 #include <algorithm>

@@ -2,7 +2,6 @@
 
 #include "simulation/held.h"
 #include "simulation/remote_engine.h"
-#include "simulation/resources.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -2,6 +2,7 @@
 #pragma once
 #include "ecs/world.h"
 #include "simulation/components.h"
+#include "simulation/resources.h"
 #include "simulation/systems/step_input.h"
 #include "statics/springs.h"
 
