@@ -74,8 +74,8 @@ struct Hand {
     bool turns = false;            // the rotation of the handle turns rigid molecules
 };
 
-// What a hand holds and how it moves it: a molecule as a whole, or some of its atoms by the Spring
-// of the hand's entity. Positions are relative to `anchor`.
+// The hold of a hand on a molecule: as a whole, or on some of its atoms by the Spring of the hand's
+// entity. Positions are relative to `anchor`.
 struct Grip {
     Entity molecule;
     Mobility before;  // mobility of the molecule before, restored when the hand releases it

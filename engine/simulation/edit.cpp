@@ -189,7 +189,7 @@ Entity find_origin(const World& world, Entity molecule) {
     return origin == Entity{} ? molecule : origin;
 }
 
-// By a spring if `what` are atoms, of the stiffness that the scene has for it.
+// Adds the hand's spring where `what` are atoms, as stiff as the scene has it.
 void set_spring(World& world, Entity hand, const AtomsOf& what) {
     if (what.atoms.empty()) return;
     const double k = world.resource<SceneFile>().scene.grab.spring_kcal_per_mol_angstrom2;

@@ -30,7 +30,7 @@ bool is_mobile(const World& world, Entity hand) noexcept;
 bool holds_whole(const World& world, Entity hand) noexcept;
 // The atoms at its spring, or all of the molecule.
 AtomsOf held_part_of(const World& world, Entity hand);
-// What it holds in the mechanics.
+// The molecule, or the spring, of the mechanics that the hand moves.
 HeldInState held_in_state(const World& world, Entity hand) noexcept;
 
 // Atoms of the molecule that a hand holds, as a whole or at a spring; empty if it holds nothing.

@@ -8,6 +8,7 @@
 #include "simulation/load.h"
 #include "simulation/molecules.h"
 #include "simulation/step.h"
+#include "tests/support/pull_molecule.h"
 #include "tests/support/water_scene.h"
 
 #include <catch2/catch.hpp>
@@ -40,18 +41,8 @@ void restrain(World& world, double k) {
     add_restraint(world, {{"free:1"}, {{at.x(), at.y(), at.z()}}, k, 0});
 }
 
-// On the oxygen and the hydrogens of a water, so that it does not turn.
 ClientPull pull_at(const World& world, const std::string& name, const Vec3& force) {
-    const AtomTable& table = world.resource<AtomTable>();
-    const AtomRange range = atoms_of_water(world, name);
-    ClientPull pull{{}, {}, table.size()};
-    double mass = 0;
-    for (std::uint32_t i = 0; i < range.count; ++i) mass += table.mass[range.first + i];
-    for (std::uint32_t i = 0; i < range.count; ++i) {
-        pull.atoms.push_back(range.first + i);
-        pull.forces.emplace_back(table.mass[range.first + i] / mass * force);
-    }
-    return pull;
+    return test::pull_molecule(world, molecule_called(world, name), force);
 }
 
 void step_on(World& world, int steps) {

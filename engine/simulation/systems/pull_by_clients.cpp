@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <iterator>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -86,12 +85,10 @@ void pull_by_clients(World& world, const StepInput& /*input*/) {
 
 bool is_pulled_by_clients(const World& world) noexcept {
     const Entity clients = find_owner<Clients>(world);
-    bool is_pulled = false;
-    world.each<Spring>([&](Entity entity, const Spring& spring) {
-        is_pulled |= clients != Entity{} && spring.owner == clients &&
-                     find_spring_index(world, entity).has_value();
-    });
-    return is_pulled;
+    return clients != Entity{} &&
+           std::ranges::any_of(find_springs(world, clients), [&](Entity spring) {
+               return find_spring_index(world, spring).has_value();
+           });
 }
 
 double find_client_energy(const World& world) noexcept {

@@ -17,6 +17,7 @@
 #include "simulation/systems/gather_springs.h"
 #include "simulation/systems/pull_by_clients.h"
 #include "tests/support/paths.h"
+#include "tests/support/pull_molecule.h"
 #include "tests/support/water_scene.h"
 
 #include <array>
@@ -55,20 +56,6 @@ Entity add_free(World& world, const std::string& name, const std::array<double, 
     add_molecule(world, {"TIP3", "", name, place});
     set_mobility(world, {name, Motion::Free, {}});
     return molecule_called(world, name);
-}
-
-// On each atom by its mass, so that the molecule does not turn.
-ClientPull pull_at_all(const World& world, Entity molecule, const Vec3& force) {
-    const AtomTable& table = world.resource<AtomTable>();
-    const AtomRange range = world.find<Molecule>(molecule)->atoms;
-    ClientPull pull{{}, {}, table.size()};
-    double mass = 0;
-    for (std::uint32_t i = 0; i < range.count; ++i) mass += table.mass[range.first + i];
-    for (std::uint32_t i = 0; i < range.count; ++i) {
-        pull.atoms.push_back(range.first + i);
-        pull.forces.emplace_back(table.mass[range.first + i] / mass * force);
-    }
-    return pull;
 }
 
 void step_both(World& world) {
@@ -184,7 +171,7 @@ TEST_CASE("two winds, a client and two hands pull at once, each with its own for
     const Vec3 start = centre_of(world, "free");
     constexpr double k = 2, gust = 0.7, client = 1.1;
     add_restraint(world, {{"free:1"}, {{start.x(), start.y(), start.z()}}, k, 0});
-    world.set_resource(pull_at_all(world, free, {0, 0, client}));
+    world.set_resource(test::pull_molecule(world, free, {0, 0, client}));
     std::array<Vec3, 2> ends{};
     for (std::size_t i = 0; i < 2; ++i) ends[i] = held_place(world, hands[i]);
     for (int i = 0; i < 600; ++i) {
