@@ -194,14 +194,14 @@ void ReplaySession::post_frame() {
     const auto seconds = [](std::size_t ticks) {
         return static_cast<double>(ticks) * servo_tick_s;
     };
-    const SceneFile& file = simulation.world().resource<SceneFile>();
+    const Coupling& coupling = simulation.world().resource<Coupling>();
     frame.readout.paused = is_paused_;
     frame.readout.replay = ReplayState{seconds(player_->next_tick()),
                                        seconds(journal_.ticks.size()),
                                        speed_,
                                        is_paused_,
                                        describe_verdict(),
-                                       {file.scene.coupling, simulation.scene().period_ms}};
+                                       {coupling.description, simulation.scene().period_ms}};
     frames_.post(frame);
 }
 

@@ -188,7 +188,7 @@ private:
     void note(const ServoTick& tick) {
         ++ticks_;
         if (lesson_.is_done()) return;
-        const CouplingMode mode = world_.resource<SceneFile>().scene.coupling.mode;
+        const CouplingMode mode = world_.resource<Coupling>().description.mode;
         lesson_.update(read_tick(tick), mode, meter_.measures().values);
         const LessonStepDescription& step = lesson_.steps()[lesson_.current()];
         if (player_ == LessonPlayer::Operator && step.question && has_begun_)
@@ -210,7 +210,7 @@ private:
         const std::vector<EditDescription> due =
             edits_.take_due(static_cast<double>(ticks_ - 1) * servo_tick_s);
         for (const EditDescription& edit : due) history_.apply(world_, edit);
-        if (begin_step() || !due.empty()) renew_servos(world_, hands_);
+        if (begin_step() || !due.empty()) renew_servos(scene_, world_, hands_);
     }
 
     // Whether that was an edit.

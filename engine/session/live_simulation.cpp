@@ -150,7 +150,6 @@ void LiveSimulation::obey(const LiveSettings& settings) {
     readout_.problem.clear();
     if (can_build_laws(settings.coupling)) {
         scene_.coupling = settings.coupling;
-        world_.resource<SceneFile>().scene.coupling = settings.coupling;  // edits begin from it
     } else {
         readout_.problem =
             "eq. 2 with these values cannot reach the slopes A_f_max and A_f_min, so the previous "
@@ -275,12 +274,7 @@ void LiveSimulation::refuse(const EditDescription& edit, std::string why) {
 void LiveSimulation::publish_edit(bool settles) {
     readout_.problem.clear();
     // The window's settings have an undo of their own.
-    CouplingDescription& of_world = world_.resource<SceneFile>().scene.coupling;
-    if (history_.has_changed_coupling()) {
-        scene_.coupling = of_world;
-    } else {
-        of_world = scene_.coupling;
-    }
+    if (history_.has_changed_coupling()) scene_.coupling = world_.resource<Coupling>().description;
     set_coupling(scene_.coupling, world_);
     set_period(scene_, world_);
     ++edition_;

@@ -61,7 +61,7 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const World& w
 
 ServoSettings build_servo_settings(const SceneDescription& scene, const World& world,
                                    const DeviceSpec& device) {
-    const CouplingDescription& c = scene.coupling;
+    const CouplingDescription& c = world.resource<Coupling>().description;
     ServoSettings settings{
         world.resource<Coupling>().laws.force,
         {.clamp_newton = c.clamp_N, .is_full = world.resource<Coupling>().is_guarded},
@@ -528,8 +528,8 @@ std::vector<LockstepHand> build_hands(const SceneDescription& scene, const World
 
 }  // namespace
 
-void renew_servos(const World& world, std::span<LockstepHand> hands) {
-    const SceneDescription& scene = world.resource<SceneFile>().scene;
+void renew_servos(const SceneDescription& scene, const World& world,
+                  std::span<LockstepHand> hands) {
     for (LockstepHand& hand : hands) {
         const std::uint32_t revision = hand.servo.guarded ? hand.servo.guarded->revision : 0;
         hand.servo = build_servo_settings(scene, world, hand.device.spec());
@@ -577,7 +577,7 @@ Summary run_headless(const SceneDescription& scene, World& world, std::span<Devi
         history.apply(world, edit);
         ++edition;
         log.note_edit();
-        renew_servos(world, hands);
+        renew_servos(scene, world, hands);
     };
     const auto step = [&](std::span<const HandPose> poses, std::span<const ContactModel> felt) {
         const double now_s = static_cast<double>(done - 1) * servo_tick_s;

@@ -44,15 +44,15 @@ std::uint64_t count_ticks(const SceneDescription& scene) noexcept;
 // The device of the scene's [device] table, as a device describes itself.
 DeviceSpec describe_emulated_device(const SceneDescription& scene);
 
-// Servo settings for this device, or for the scene's own. A real device always has the whole safety
-// chain, with the device's limits, and forces start after quiet cycles with a ramp; an emulated one
-// has the whole chain only with guarded coupling.
+// Servo settings for this device, or for the scene's own, with the world's coupling. A real device
+// always has the whole safety chain, with the device's limits, and forces start after quiet cycles
+// with a ramp; an emulated one has the whole chain only with guarded coupling.
 ServoSettings build_servo_settings(const SceneDescription& scene, const World& world,
                                    const DeviceSpec& device);
 ServoSettings build_servo_settings(const SceneDescription& scene, const World& world);
 
 // Applies changes of the coupling by edits to the hands; their servos blend into the new values.
-void renew_servos(const World& world, std::span<LockstepHand> hands);
+void renew_servos(const SceneDescription& scene, const World& world, std::span<LockstepHand> hands);
 
 // Throws LoadError if the device must not run with this period of the simulation: a real device
 // with motors and a period above `longest_real_period_s`.

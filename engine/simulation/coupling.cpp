@@ -86,10 +86,13 @@ CouplingLaws build_coupling_laws(const CouplingDescription& c) {
     return {ConstantForceLaw{0}, constant_displacement};
 }
 
+Coupling build_coupling(const CouplingDescription& coupling) {
+    return {build_coupling_laws(coupling), coupling.mode == CouplingMode::Guarded,
+            static_cast<std::size_t>(coupling.pairs_per_tick), coupling};
+}
+
 void set_coupling(const CouplingDescription& coupling, World& world) {
-    world.set_resource(Coupling{build_coupling_laws(coupling),
-                                coupling.mode == CouplingMode::Guarded,
-                                static_cast<std::size_t>(coupling.pairs_per_tick)});
+    world.set_resource(build_coupling(coupling));
     if (AdaptiveState* const adaptive = world.find_resource<AdaptiveState>()) {
         if (adaptive->accuracy && coupling.feel_within_pN)
             adaptive->accuracy->set_tolerance(*coupling.feel_within_pN);

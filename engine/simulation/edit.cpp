@@ -448,20 +448,17 @@ void set_appearance(World& world, const AppearanceEdit& edit) {
 }
 
 void set_coupling(World& world, const CouplingEdit& edit) {
-    SceneDescription& scene = world.resource<SceneFile>().scene;
-    const CouplingDescription coupling = with_settings(scene.coupling, edit.settings);
+    const CouplingDescription coupling =
+        with_settings(world.resource<Coupling>().description, edit.settings);
     if (!can_build_laws(coupling))
         refuse(
             "eq. 2 with these F_h1_N, F_h2_N and F_0_nN cannot have the slopes A_f_max at 0 and "
             "A_f_min at F_0; expected other values, or force_law = \"printed\"");
-    scene.coupling = coupling;
     set_coupling(coupling, world);
 }
 
 void reset(World& world) {
-    SceneDescription scene = world.resource<SceneFile>().scene;
-    scene.coupling = world.resource<SceneFile>().coupling;
-    World start = load_world(scene);
+    World start = load_world(world.resource<SceneFile>().scene);
     keep_clock_and_devices(world, start);
     ++start.resource<Clock>().resets;
     world = std::move(start);

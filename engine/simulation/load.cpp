@@ -291,7 +291,7 @@ World read_world(const SceneDescription& scene, const StageFunction& on_stage) {
                  static_cast<double>(scene.molecules.size()));
         add_molecule(scene, molecule, *force_field, files, world);
     }
-    world.set_resource(SceneFile{scene, std::move(force_field), scene.coupling});
+    world.set_resource(SceneFile{scene, std::move(force_field)});
     set_interactions(world);
     return world;
 }
@@ -309,6 +309,7 @@ void check_laws(const SceneDescription& scene) {
 World load_world(const SceneDescription& scene, const StageFunction& on_stage) {
     check_laws(scene);
     World world = read_world(scene, on_stage);
+    world.set_resource(build_coupling(scene.coupling));
     add_hands(scene, world);
     if (scene.engine) {
         set_remote_engine(scene, world);

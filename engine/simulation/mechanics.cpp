@@ -6,6 +6,7 @@
 #include "charmm/generate.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "simulation/coupling.h"
 #include "simulation/held.h"
 #include "simulation/region.h"
 #include "simulation/remote_engine.h"
@@ -317,7 +318,8 @@ std::vector<double> find_mobility_weights(const TorsionModel& model) {
 }
 
 AdaptiveState build_adaptive(const SceneDescription& scene, const RelaxSettings& settings,
-                             const TorsionModel& model, std::span<const HeldPart> held) {
+                             const TorsionModel& model, std::span<const HeldPart> held,
+                             const World& world) {
     AdaptiveState adaptive;
     adaptive.settings = build_adaptive_settings(scene.statics, settings.step);
     adaptive.statics = build_adaptive_statics(model);
@@ -331,7 +333,7 @@ AdaptiveState build_adaptive(const SceneDescription& scene, const RelaxSettings&
     }
     adaptive.choose_every = adaptive.settings.choose_every;
     if (scene.statics.budget_us) adaptive.budget.emplace(*scene.statics.budget_us);
-    if (const auto within_pN = scene.coupling.feel_within_pN) {
+    if (const auto within_pN = world.resource<Coupling>().description.feel_within_pN) {
         adaptive.accuracy.emplace(
             *within_pN, WorkBudget{adaptive.settings.limits.degrees_of_freedom, settings.steps},
             static_cast<std::size_t>(model.coordinates), adaptive.budget.has_value());
@@ -535,7 +537,7 @@ void set_mechanics(const SceneDescription& scene, TorsionModel model, ModelAtoms
     RelaxSettings settings = build_settings(scene);
     settings.method = find_method(scene, model.coordinates);
     if (settings.method == RelaxMethod::QuasiStatic)
-        world.set_resource(build_adaptive(scene, settings, model, held));
+        world.set_resource(build_adaptive(scene, settings, model, held, world));
     world.set_resource(Solver{settings, build_quasi_statics(model), {}});
     world.set_resource(std::move(state));
     world.set_resource(Mechanics{std::make_shared<const TorsionModel>(std::move(model)),
@@ -543,7 +545,7 @@ void set_mechanics(const SceneDescription& scene, TorsionModel model, ModelAtoms
     gather_springs(world, {});
     if (settings.method == RelaxMethod::SecondOrder) {
         SecondOrder second = build_second_order(scene.statics, settings, world);
-        if (const auto within_pN = scene.coupling.feel_within_pN)
+        if (const auto within_pN = world.resource<Coupling>().description.feel_within_pN)
             second.settings.tolerance = *within_pN / units::piconewton_per_kcal_per_mol_angstrom;
         world.set_resource(std::move(second));
     } else if (model_of(world).coordinates <= most_second_order_coordinates) {
@@ -728,6 +730,7 @@ World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
     world.set_resource(std::move(atoms));
     world.set_resource(GatheredSprings{});
     world.set_resource(Clock{scene.period_ms * 1e-3});  // a renewal is due after a time
+    world.set_resource(build_coupling(scene.coupling));
     StartReport report;
     report.joints = model.tree.bodies.joints();
     world.set_resource(report);

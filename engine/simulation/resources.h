@@ -29,7 +29,6 @@ struct Topology;
 struct SceneFile {
     SceneDescription scene;
     std::shared_ptr<const ForceField> force_field;
-    CouplingDescription coupling;  // coupling of the file; `scene` has it as changed by edits
 };
 
 // Bonded terms of all molecules in the order of the table; empty until something mobile needs them.
@@ -62,6 +61,7 @@ struct Coupling {
     CouplingLaws laws;
     bool is_guarded = false;               // the servo moves the molecule
     std::size_t pairs_per_tick = 130'000;  // pairs that a servo tick has time for
+    CouplingDescription description;       // the scene's, as edits have changed it
 };
 
 struct Clock {

@@ -595,7 +595,7 @@ TEST_CASE("a reset is the scene as its file has it, and can be undone", "[simula
     World world = is_mobile ? load_two() : load_waters();
     const std::string name = is_mobile ? "resting" : "fixed";
     const std::string start = world_bytes(world);
-    const CouplingMode mode = world.resource<SceneFile>().scene.coupling.mode;
+    const CouplingMode mode = world.resource<Coupling>().description.mode;
     EditHistory history;
     history.apply(world, edit_of(AddEdit{"", name, "another", {30, 0, 0}}));
     history.apply(world, edit_of(TakeEdit{"another"}));
@@ -607,7 +607,7 @@ TEST_CASE("a reset is the scene as its file has it, and can be undone", "[simula
     history.apply(world, edit_of(ResetEdit{}));
 
     CHECK(world_bytes(world) == start);
-    CHECK(world.resource<SceneFile>().scene.coupling.mode == mode);
+    CHECK(world.resource<Coupling>().description.mode == mode);
     // Time goes on, and the hand, which takes hold anew where its device is.
     CHECK(world.resource<Clock>().steps == 1);
     CHECK(local_contact_of(world).model.start > last);

@@ -103,8 +103,7 @@ void add_hands(const World& world, Bytes& bytes) {
 
 void add_coupling(const World& world, Bytes& bytes) {
     const Coupling& coupling = world.resource<Coupling>();
-    bytes << coupling.is_guarded << coupling.pairs_per_tick
-          << world.resource<SceneFile>().scene.coupling.mode;
+    bytes << coupling.is_guarded << coupling.pairs_per_tick << coupling.description.mode;
     for (const double newton : {1e-12, 1e-10, 1e-9})
         bytes << force_gain(coupling.laws.force, newton)
               << displacement_gain(coupling.laws.displacement, newton);

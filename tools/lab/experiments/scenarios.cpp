@@ -47,8 +47,7 @@ std::vector<std::string> draw_scenario(Draws& draws) {
 
 // Work (J) that the static law, cut at the clamp, does on the hand while the molecule goes from one
 // distance (Å) to another: the integral of f(F) A_d.
-double find_static_work(const World& world, double from, double to) {
-    const SceneDescription& scene = world.resource<SceneFile>().scene;
+double find_static_work(const SceneDescription& scene, const World& world, double from, double to) {
     const ServoSettings servo = build_servo_settings(scene, world);
     const double clamp_newton = servo.safety.clamp_newton;
     const auto steps = static_cast<int>(std::ceil(std::abs(to - from) / 1e-3)) + 1;
@@ -72,7 +71,8 @@ bool is_on_axis(const ServoTick& tick) noexcept { return tick.contact.active_fre
 // give it back.
 class Stretches {
 public:
-    Stretches(const World& world, const WatchedDevice& device) : world_(world), device_(device) {}
+    Stretches(const SceneDescription& scene, const World& world, const WatchedDevice& device)
+        : scene_(scene), world_(world), device_(device) {}
 
     void add(const ServoTick& tick, bool is_disturbed) {
         const bool is_whole = !is_disturbed && tick.stage <= SafetyStage::ThermalLimit &&
@@ -102,10 +102,11 @@ public:
 private:
     void close() {
         if (!std::exchange(is_open_, false)) return;
-        const double by_law = find_static_work(world_, first_place_, place_);
+        const double by_law = find_static_work(scene_, world_, first_place_, place_);
         most_J_ = std::max(most_J_, work_J_ - first_work_J_ - by_law);
     }
 
+    const SceneDescription& scene_;
     const World& world_;
     const WatchedDevice& device_;
     bool is_open_ = false;
@@ -165,7 +166,7 @@ ScenarioResult play_scenario(const ScenarioOptions& options, std::size_t number)
     EmulatedOmni omni(build_emulated_omni(scene, world));
     WatchedDevice watched(omni);
     FaultyDevice device(watched, disturbances.faults);
-    Stretches stretches(world, watched);
+    Stretches stretches(scene, world, watched);
     std::uint64_t ticks = 0;
     const auto watch = [&](const ServoTick& tick) {
         const double time_s = static_cast<double>(ticks++) * servo_tick_s;
@@ -176,7 +177,7 @@ ScenarioResult play_scenario(const ScenarioOptions& options, std::size_t number)
     result.net_work_J = watched.work_J();
     if (scene.edits.empty())
         result.over_all_J =
-            result.net_work_J - find_static_work(world, start, grabbed_distance(world));
+            result.net_work_J - find_static_work(scene, world, start, grabbed_distance(world));
     result.generated_J = options.is_disturbed ? stretches.finish() : result.over_all_J.value_or(0);
     result.judged_share = stretches.share();
     result.most_newton = watched.most_newton();
