@@ -63,8 +63,7 @@ PoseComparison::PoseComparison(const World& world) {
     const Entity hand = first_hand(world);
     const std::vector<std::uint32_t> held = held_atoms(world, hand);
     held_ = find_symmetries(atoms, held);
-    const Entity other =
-        molecule_called(world, world.resource<SceneFile>().scene.grab.measured_from);
+    const Entity other = molecule_called(world, world.resource<GrabSettings>().measured_from);
     const AtomRange frame = other == Entity{} ? AtomRange{} : world.find<Molecule>(other)->atoms;
     for (const std::vector<std::uint32_t>& residue : list_residues(atoms, held)) {
         if (!is_amino_acid(atoms, residue)) continue;

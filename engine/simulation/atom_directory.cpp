@@ -29,7 +29,7 @@ std::shared_ptr<const AtomDirectory> list_atoms(const World& world) {
         directory->molecules.push_back({molecule.name, molecule.atoms, molecule.reference_atom});
     });
     number_residues(*directory);
-    directory->force_field = world.resource<SceneFile>().force_field;
+    directory->force_field = world.resource<ForceFieldInUse>().force_field;
     return directory;
 }
 

@@ -184,15 +184,14 @@ Motion motion_in_hand(const World& world, Entity hand) {
 
 // From what the hand measured before, or from the molecule itself.
 Entity find_origin(const World& world, Entity molecule) {
-    const SceneFile& file = world.resource<SceneFile>();
-    const Entity origin = molecule_called(world, file.scene.grab.measured_from);
+    const Entity origin = molecule_called(world, world.resource<GrabSettings>().measured_from);
     return origin == Entity{} ? molecule : origin;
 }
 
 // Adds the hand's spring where `what` are atoms, as stiff as the scene has it.
 void set_spring(World& world, Entity hand, const AtomsOf& what) {
     if (what.atoms.empty()) return;
-    const double k = world.resource<SceneFile>().scene.grab.spring_kcal_per_mol_angstrom2;
+    const double k = world.resource<GrabSettings>().spring_kcal_per_mol_angstrom2;
     world.set(hand, Spring{.ends = {what}, .k = k, .owner = hand});
 }
 
@@ -224,7 +223,7 @@ Source build_source(const World& world, Entity original, const AddEdit& edit) {
     if (original != Entity{}) return copy_source(world, original, edit.name);
     if (!edit.structure.empty())
         return read_segment(edit.structure, edit.topology, edit.segment, edit.name);
-    return build_residue(*world.resource<SceneFile>().force_field, edit.residue, edit.name);
+    return build_residue(*world.resource<ForceFieldInUse>().force_field, edit.residue, edit.name);
 }
 
 void place_atoms(World& world, AtomRange range, const Vec3& by) {
@@ -348,7 +347,7 @@ void put_back(World& world, Entity hand) {
 void add_molecule(World& world, const AddEdit& edit) {
     edit_whole(world, [&](World& changed) {
         check_name_is_new(changed, edit.name);
-        const ForceField& force_field = *changed.resource<SceneFile>().force_field;
+        const ForceField& force_field = *changed.resource<ForceFieldInUse>().force_field;
         const bool is_copy = !edit.copy_of.empty();
         const Entity original = is_copy ? find_molecule(changed, edit.copy_of) : Entity{};
         Source source = build_source(changed, original, edit);
@@ -458,7 +457,7 @@ void set_coupling(World& world, const CouplingEdit& edit) {
 }
 
 void reset(World& world) {
-    World start = load_world(world.resource<SceneFile>().scene);
+    World start = load_again(world);
     keep_clock_and_devices(world, start);
     ++start.resource<Clock>().resets;
     world = std::move(start);

@@ -268,6 +268,23 @@ void start_hands(const SceneDescription& scene, World& world) {
         check_distance(scene, tables[i], hands[i], world);
 }
 
+void set_settings(const SceneDescription& scene, std::shared_ptr<const ForceField> force_field,
+                  World& world) {
+    world.set_resource(SceneFile{std::make_shared<const SceneDescription>(scene)});
+    world.set_resource(ScenePlaces{scene.file, scene.places});
+    ForceFieldInUse in_use{scene.force_field, std::move(force_field), {}};
+    for (const MoleculeDescription& molecule : scene.molecules)
+        if (molecule.structural_water) in_use.structural_waters.push_back(molecule.name);
+    world.set_resource(std::move(in_use));
+    MechanicsSettings mechanics{scene.joints, scene.statics};
+    if (mechanics.joints.around.empty()) mechanics.joints.around = scene.grab.molecule;
+    world.set_resource(std::move(mechanics));
+    GrabSettings grab{scene.grab.measured_from, scene.grab.spring_kcal_per_mol_angstrom2, {}};
+    for (const HandTables& tables : list_hands(scene))
+        grab.start_offsets.emplace_back(tables.hand.start_offset_angstrom.data());
+    world.set_resource(std::move(grab));
+}
+
 // Molecules as files have them; nobody holds anything.
 World read_world(const SceneDescription& scene, const StageFunction& on_stage) {
     World world;
@@ -291,7 +308,7 @@ World read_world(const SceneDescription& scene, const StageFunction& on_stage) {
                  static_cast<double>(scene.molecules.size()));
         add_molecule(scene, molecule, *force_field, files, world);
     }
-    world.set_resource(SceneFile{scene, std::move(force_field)});
+    set_settings(scene, std::move(force_field), world);
     set_interactions(world);
     return world;
 }
@@ -331,6 +348,8 @@ World load_world(const SceneDescription& scene, const StageFunction& on_stage) {
     (void)find_empty_selections(scene.view, world);  // throws for those that are none
     return world;
 }
+
+World load_again(const World& world) { return load_world(*world.resource<SceneFile>().scene); }
 
 SceneSystem load_system(const SceneDescription& scene) {
     World world = read_world(scene, {});

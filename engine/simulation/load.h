@@ -16,6 +16,9 @@ namespace palpa {
 // to its start. `on_stage` hears of long stages. Throws LoadError with the place of the problem.
 World load_world(const SceneDescription& scene, const StageFunction& on_stage = {});
 
+// Loads the scene of a world again, without its edits. Throws LoadError as load_world does.
+World load_again(const World& world);
+
 // The molecules of a scene in the order of the atom table of load_world, with positions from the
 // files.
 struct SceneSystem {

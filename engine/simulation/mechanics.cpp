@@ -80,15 +80,15 @@ JointOverride read_override(const Connectivity& connectivity, const std::string&
         motion};
 }
 
-JointRules read_rules(const SceneDescription& scene, const Connectivity& connectivity) {
-    const JointsDescription& j = scene.joints;
+JointRules read_rules(const JointsDescription& j, const ScenePlaces& places,
+                      const Connectivity& connectivity) {
     JointRules rules{j.hydroxyl, j.thiol,     j.ammonium,        j.methyl,
                      j.amide,    j.amide_nh2, j.guanidinium_nh2, {}};
     const auto add = [&](const std::vector<std::string>& bonds, BondMotion motion,
                          std::string_view key) {
         for (const std::string& bond : bonds) {
             rules.overrides.push_back(
-                read_override(connectivity, bond, motion, scene.place_of(key)));
+                read_override(connectivity, bond, motion, places.place_of(key)));
         }
     };
     add(j.turn, BondMotion::Turn, "joints.turn");
@@ -146,14 +146,16 @@ struct SceneJoints {
     std::size_t held = 0;
 };
 
-SceneJoints find_joints(const SceneDescription& scene, const Connectivity& connectivity,
+SceneJoints find_joints(const World& world, const Connectivity& connectivity,
                         std::span<const Vec3> positions, std::span<const ScenePart> parts,
                         const std::optional<Region>& region) {
+    const JointsDescription& described = world.resource<MechanicsSettings>().joints;
+    const ScenePlaces& places = world.resource<ScenePlaces>();
     MobileAtoms mobile(connectivity.names.size());
     for (const ScenePart& part : parts) {
         if (part.mobility.shape == Shape::Flexible) mobile.allow(part.atoms);
     }
-    const JointRules rules = read_rules(scene, connectivity);
+    const JointRules rules = read_rules(described, places, connectivity);
     SceneJoints result{build_joints(connectivity, rules), 0};
     // What the scene names turns whatever else it says, but for rigid molecules.
     const auto is_named = [&](const Joint& joint) {
@@ -162,7 +164,7 @@ SceneJoints find_joints(const SceneDescription& scene, const Connectivity& conne
                    std::minmax(o.bond[0], o.bond[1]) == std::minmax(joint.bond[0], joint.bond[1]);
         });
     };
-    if (!scene.joints.backbone) {
+    if (!described.backbone) {
         std::erase_if(result.joints.joints, [&](const Joint& joint) {
             return is_backbone(connectivity, joint.bond) && !is_named(joint);
         });
@@ -170,7 +172,7 @@ SceneJoints find_joints(const SceneDescription& scene, const Connectivity& conne
     for (const JointOverride& o : rules.overrides) {
         if (o.motion != BondMotion::Turn || mobile.has(o.bond)) continue;
         throw LoadError(
-            scene.place_of("joints.turn"),
+            places.place_of("joints.turn"),
             fmt::format(
                 "bond {} - {} belongs to a rigid molecule; expected shape = \"flexible\" for it",
                 to_string(connectivity.names[o.bond[0]]),
@@ -191,13 +193,11 @@ SceneJoints find_joints(const SceneDescription& scene, const Connectivity& conne
         result.held = all - result.joints.joints.size();
         return result;
     }
-    if (!scene.joints.within_angstrom) return result;
-    const std::string& name =
-        scene.joints.around.empty() ? scene.grab.molecule : scene.joints.around;
-    const auto around = std::ranges::find(parts, name, &ScenePart::name);
+    if (!described.within_angstrom) return result;
+    const auto around = std::ranges::find(parts, described.around, &ScenePart::name);
     if (around == parts.end()) return result;
     for (const ScenePart& part : parts) {
-        mobile.keep_within(*scene.joints.within_angstrom, around->atoms, part.atoms, connectivity,
+        mobile.keep_within(*described.within_angstrom, around->atoms, part.atoms, connectivity,
                            positions);
     }
     keep_mobile();
@@ -264,8 +264,9 @@ void fix_held(std::span<const HeldPart> held, TorsionModel& model) {
 
 // ---- settings --------------------------------------------------------------------------------
 
-RelaxSettings build_settings(const SceneDescription& scene) {
-    const StaticsDescription& s = scene.statics;
+RelaxSettings build_settings(const World& world) {
+    const StaticsDescription& s = world.resource<MechanicsSettings>().statics;
+    const ForceFieldDescription& force_field = world.resource<ForceFieldInUse>().description;
     RelaxSettings settings;
     settings.method = method_of(s);
     settings.force_tolerance = s.rest_kcal_per_mol;
@@ -275,9 +276,9 @@ RelaxSettings build_settings(const SceneDescription& scene) {
     settings.step.largest_move = s.largest_move_angstrom;
     ForceSettings& forces = settings.step.forces;
     forces.fast = s.pairs == PairPrecision::Fast;
-    forces.nonbonded.coulomb_constant = scene.force_field.coulomb_constant;
-    if (scene.force_field.solvent != Solvent::None) {
-        forces.nonbonded = solvent_settings(scene.force_field);
+    forces.nonbonded.coulomb_constant = force_field.coulomb_constant;
+    if (force_field.solvent != Solvent::None) {
+        forces.nonbonded = solvent_settings(force_field);
     } else if (s.cutoff_angstrom) {
         constexpr double width = 2;  // Å
         forces.nonbonded.electrostatics = ElectrostaticCutoff::ForceSwitch;
@@ -317,13 +318,13 @@ std::vector<double> find_mobility_weights(const TorsionModel& model) {
     return mobility_weights;
 }
 
-AdaptiveState build_adaptive(const SceneDescription& scene, const RelaxSettings& settings,
-                             const TorsionModel& model, std::span<const HeldPart> held,
-                             const World& world) {
+AdaptiveState build_adaptive(const RelaxSettings& settings, const TorsionModel& model,
+                             std::span<const HeldPart> held, const World& world) {
+    const StaticsDescription& s = world.resource<MechanicsSettings>().statics;
     AdaptiveState adaptive;
-    adaptive.settings = build_adaptive_settings(scene.statics, settings.step);
+    adaptive.settings = build_adaptive_settings(s, settings.step);
     adaptive.statics = build_adaptive_statics(model);
-    adaptive.weighs_hand_proximity = scene.statics.weights == JointWeights::HandProximity;
+    adaptive.weighs_hand_proximity = s.weights == JointWeights::HandProximity;
     if (adaptive.weighs_hand_proximity) {
         adaptive.mobility_weights = find_mobility_weights(model);
         // What is in the hand weighs nothing.
@@ -332,7 +333,7 @@ AdaptiveState build_adaptive(const SceneDescription& scene, const RelaxSettings&
         adaptive.settings.factors = adaptive.mobility_weights;
     }
     adaptive.choose_every = adaptive.settings.choose_every;
-    if (scene.statics.budget_us) adaptive.budget.emplace(*scene.statics.budget_us);
+    if (s.budget_us) adaptive.budget.emplace(*s.budget_us);
     if (const auto within_pN = world.resource<Coupling>().description.feel_within_pN) {
         adaptive.accuracy.emplace(
             *within_pN, WorkBudget{adaptive.settings.limits.degrees_of_freedom, settings.steps},
@@ -415,13 +416,14 @@ ErrorEstimate build_error_estimate(const RelaxSettings& settings, Solvent solven
 }
 
 // Matrices of more coordinates are too large.
-RelaxMethod find_method(const SceneDescription& scene, Eigen::Index coordinates) {
-    const RelaxMethod method = method_of(scene.statics);
+RelaxMethod find_method(const World& world, Eigen::Index coordinates) {
+    const StaticsDescription& s = world.resource<MechanicsSettings>().statics;
+    const RelaxMethod method = method_of(s);
     if (method != RelaxMethod::SecondOrder || coordinates <= most_second_order_coordinates)
         return method;
-    if (!scene.statics.method) return RelaxMethod::QuasiStatic;
+    if (!s.method) return RelaxMethod::QuasiStatic;
     throw LoadError(
-        scene.place_of("statics.method"),
+        world.resource<ScenePlaces>().place_of("statics.method"),
         fmt::format("the second-order method with {} degrees of freedom would need {:.1f} GB and "
                     "minutes; expected at most {} degrees of freedom: use fewer joints "
                     "(joints.region_angstrom, joints.within_angstrom), or quasi-static",
@@ -457,8 +459,8 @@ Plan plan_mechanics(World& world) {
     const Connectivity& connectivity = *bonded_terms(world).connectivity;
     const std::vector<ScenePart> parts = list_parts(world);
     const std::optional<Region> region = find_region(world);
-    SceneJoints joints = find_joints(world.resource<SceneFile>().scene, connectivity,
-                                     world.resource<AtomTable>().positions, parts, region);
+    SceneJoints joints =
+        find_joints(world, connectivity, world.resource<AtomTable>().positions, parts, region);
     std::vector<std::uint32_t> base_atoms;
     if (region) {
         const auto cuts = find_region_cuts(connectivity, region->is_inside, joints.joints.springs);
@@ -482,7 +484,7 @@ std::vector<HeldPart> find_held(const World& world, const Plan& plan) {
     const auto piece_of = [&](std::uint32_t atom) {
         return molecule_of[plan.bodies.body_of[plan.atoms.in_model(atom).value()]];
     };
-    const SceneDescription& scene = world.resource<SceneFile>().scene;
+    const ScenePlaces& places = world.resource<ScenePlaces>();
     std::vector<HeldPart> held;
     world.each<Grip>([&](Entity hand, const Grip& grip) {
         const bool is_first = hand == first_hand(world);
@@ -493,7 +495,7 @@ std::vector<HeldPart> find_held(const World& world, const Plan& plan) {
             part.spring = find_model_spring(world, plan.atoms, *spring);
         } else {
             part.base = piece_of(molecule.reference_atom);
-            check_one_piece(scene.place_of(is_first ? "grab.molecule" : "second.grab.molecule"),
+            check_one_piece(places.place_of(is_first ? "grab.molecule" : "second.grab.molecule"),
                             molecule, piece_of);
         }
     });
@@ -518,8 +520,8 @@ TorsionModel build_model(World& world, const Plan& plan, std::vector<MoleculeBas
                                cut_topology(*terms.topology, atoms), std::move(bases));
 }
 
-void set_mechanics(const SceneDescription& scene, TorsionModel model, ModelAtoms atoms,
-                   std::span<const HeldPart> held, World& world) {
+void set_mechanics(TorsionModel model, ModelAtoms atoms, std::span<const HeldPart> held,
+                   World& world) {
     fix_held(held, model);
     TorsionState state = build_torsion_state(model);
     std::size_t next = 0;
@@ -534,35 +536,37 @@ void set_mechanics(const SceneDescription& scene, TorsionModel model, ModelAtoms
     world.remove_resource<AdaptiveState>();
     world.remove_resource<SecondOrder>();
     world.remove_resource<ErrorEstimate>();
-    RelaxSettings settings = build_settings(scene);
-    settings.method = find_method(scene, model.coordinates);
+    RelaxSettings settings = build_settings(world);
+    settings.method = find_method(world, model.coordinates);
     if (settings.method == RelaxMethod::QuasiStatic)
-        world.set_resource(build_adaptive(scene, settings, model, held, world));
+        world.set_resource(build_adaptive(settings, model, held, world));
     world.set_resource(Solver{settings, build_quasi_statics(model), {}});
     world.set_resource(std::move(state));
     world.set_resource(Mechanics{std::make_shared<const TorsionModel>(std::move(model)),
                                  std::make_shared<const ModelAtoms>(std::move(atoms))});
     gather_springs(world, {});
     if (settings.method == RelaxMethod::SecondOrder) {
-        SecondOrder second = build_second_order(scene.statics, settings, world);
+        SecondOrder second =
+            build_second_order(world.resource<MechanicsSettings>().statics, settings, world);
         if (const auto within_pN = world.resource<Coupling>().description.feel_within_pN)
             second.settings.tolerance = *within_pN / units::piconewton_per_kcal_per_mol_angstrom;
         world.set_resource(std::move(second));
     } else if (model_of(world).coordinates <= most_second_order_coordinates) {
-        world.set_resource(build_error_estimate(settings, scene.force_field.solvent, world));
+        world.set_resource(build_error_estimate(
+            settings, world.resource<ForceFieldInUse>().description.solvent, world));
     }
     start_mechanics(world);
 }
 
 // What must be different atoms.
 void check_segments(const World& world) {
-    const SceneDescription& scene = world.resource<SceneFile>().scene;
+    const ScenePlaces& places = world.resource<ScenePlaces>();
     world.each<Molecule, Source>([&](Entity a, const Molecule& one, const Source& from) {
         world.each<Molecule, Source>([&](Entity b, const Molecule& other, const Source& source) {
             if (a == b || from.structure != source.structure || from.segment != source.segment)
                 return;
             throw LoadError(
-                scene.place_of("molecules." + other.name + ".segment"),
+                places.place_of("molecules." + other.name + ".segment"),
                 fmt::format("'{}' and '{}' are the same atoms (segment '{}'); expected each "
                             "segment only once in a scene with molecules that move by themselves",
                             one.name, other.name, from.segment));
@@ -598,7 +602,7 @@ const BondedTerms& bonded_terms(World& world) {
     BondedTerms& terms = world.resource<BondedTerms>();
     if (terms.topology) return terms;
     check_segments(world);
-    const ForceField& force_field = *world.resource<SceneFile>().force_field;
+    const ForceField& force_field = *world.resource<ForceFieldInUse>().force_field;
     // Several molecules may be of one file.
     std::map<const Structure*, std::shared_ptr<const Connectivity>> generated;
     auto all = std::make_shared<Connectivity>();
@@ -640,8 +644,7 @@ void rebuild_mechanics(World& world) {
     }
     const std::vector<HeldPart> held = find_held(world, plan);
     TorsionModel model = build_model(world, plan, plan.bases);
-    set_mechanics(world.resource<SceneFile>().scene, std::move(model), std::move(plan.atoms), held,
-                  world);
+    set_mechanics(std::move(model), std::move(plan.atoms), held, world);
 }
 
 bool has_left_region(const World& world) noexcept {
@@ -672,7 +675,7 @@ void renew_region(World& world) noexcept {
 }
 
 void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_relax) {
-    const SceneDescription& scene = world.resource<SceneFile>().scene;
+    const StaticsDescription& s = world.resource<MechanicsSettings>().statics;
     const Plan plan = plan_mechanics(world);
     const std::vector<HeldPart> held = find_held(world, plan);
 
@@ -690,21 +693,21 @@ void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_rel
     });
     QuasiStatics statics = build_quasi_statics(loose);
     RelaxSettings to_rest;
-    to_rest.step.forces = build_settings(scene).step.forces;
-    to_rest.force_tolerance = scene.statics.rest_kcal_per_mol;
-    to_rest.steps = static_cast<std::size_t>(scene.statics.relax_steps);
+    to_rest.step.forces = build_settings(world).step.forces;
+    to_rest.force_tolerance = s.rest_kcal_per_mol;
+    to_rest.steps = static_cast<std::size_t>(s.relax_steps);
     StartReport& report = world.resource<StartReport>();
     report.joints = plan.joints;
     report.joints_held = plan.joints_held;
     report.joints_at_rest = relax_joints(loose, to_rest, rest, statics, on_relax);
     if (report.joints_at_rest->end == RelaxEnd::NotFinite) {
-        throw LoadError(scene.place_of("molecules"),
+        throw LoadError(world.resource<ScenePlaces>().place_of("molecules"),
                         "the energy at the start is not finite; expected atoms that do not "
                         "overlap, with sensible charges and parameters");
     }
     put_in_table(loose, plan.atoms, rest.positions, world.resource<AtomTable>().positions);
     TorsionModel model = build_model(world, plan, plan.bases);
-    set_mechanics(scene, std::move(model), plan.atoms, held, world);
+    set_mechanics(std::move(model), plan.atoms, held, world);
     copy_positions(world);
 }
 
@@ -730,11 +733,14 @@ World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
     world.set_resource(std::move(atoms));
     world.set_resource(GatheredSprings{});
     world.set_resource(Clock{scene.period_ms * 1e-3});  // a renewal is due after a time
+    world.set_resource(ScenePlaces{scene.file, scene.places});
+    world.set_resource(ForceFieldInUse{scene.force_field, nullptr, {}});
+    world.set_resource(MechanicsSettings{{}, scene.statics});
     world.set_resource(build_coupling(scene.coupling));
     StartReport report;
     report.joints = model.tree.bodies.joints();
     world.set_resource(report);
-    set_mechanics(scene, std::move(model), {}, std::span(&held, 1), world);
+    set_mechanics(std::move(model), {}, std::span(&held, 1), world);
     return world;
 }
 

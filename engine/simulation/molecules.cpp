@@ -76,13 +76,13 @@ AtomRange add_segment_atoms(const ForceField& force_field, const Source& source,
 }
 
 void set_interactions(World& world) {
-    const SceneFile& file = world.resource<SceneFile>();
-    const ForceFieldDescription& description = file.scene.force_field;
+    const ForceFieldInUse& in_use = world.resource<ForceFieldInUse>();
+    const ForceFieldDescription& description = in_use.description;
     Interactions interactions{.coulomb_constant = description.coulomb_constant,
                               .replaced_pairs = build_replaced_pairs(
-                                  *file.force_field, world.resource<AtomTable>().type_names),
+                                  *in_use.force_field, world.resource<AtomTable>().type_names),
                               .smooth = {},
-                              .precision = file.scene.statics.pairs};
+                              .precision = world.resource<MechanicsSettings>().statics.pairs};
     if (description.solvent != Solvent::None) {
         const PairRule rule = find_field_rule(solvent_settings(description)).value();
         interactions.coulomb_constant = rule.coulomb_constant;

@@ -74,15 +74,15 @@ void mark_inside(const AtomTable& table, const Molecule& molecule, const Mobilit
 }  // namespace
 
 std::optional<Region> find_region(World& world) {
-    const SceneDescription& scene = world.resource<SceneFile>().scene;
-    if (!scene.joints.region_angstrom) return {};
+    const MechanicsSettings& settings = world.resource<MechanicsSettings>();
+    if (!settings.joints.region_angstrom) return {};
     const AtomTable& table = world.resource<AtomTable>();
     const std::vector<std::uint32_t> held = update_centre(world);
     const Places around(table.positions, held);
     Region region;
     region.is_inside.assign(table.size(), 0);
     world.each<Molecule, Mobility>([&](Entity, const Molecule& molecule, const Mobility& mobility) {
-        mark_inside(table, molecule, mobility, around, *scene.joints.region_angstrom,
+        mark_inside(table, molecule, mobility, around, *settings.joints.region_angstrom,
                     region.is_inside);
     });
     std::vector<std::uint32_t> inside;
@@ -99,8 +99,8 @@ std::optional<Region> find_region(World& world) {
         }
     });
     const Places mobile(table.positions, inside);
-    const double reach = scene.statics.cutoff_angstrom
-                             ? *scene.statics.cutoff_angstrom + region_margin
+    const double reach = settings.statics.cutoff_angstrom
+                             ? *settings.statics.cutoff_angstrom + region_margin
                              : std::numeric_limits<double>::infinity();
     for (std::uint32_t i = 0; i < table.size(); ++i) {
         if (is_needed[i] != 0 || mobile.has_within(reach, table.positions[i]))

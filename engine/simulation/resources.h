@@ -15,8 +15,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace palpa {
@@ -25,10 +30,40 @@ struct Connectivity;
 struct ForceField;
 struct Topology;
 
-// The scene that the world was loaded from, and its force field for additions.
+// The scene as it was loaded; only loading it again reads it.
 struct SceneFile {
-    SceneDescription scene;
+    std::shared_ptr<const SceneDescription> scene;
+};
+
+// The position of each field of the scene in its file, by full key, for messages.
+struct ScenePlaces {
+    std::filesystem::path file;
+    std::map<std::string, TextPlace, std::less<>> places;
+
+    TextPlace place_of(std::string_view key) const {
+        const auto found = places.find(key);
+        return found == places.end() ? TextPlace{file.string()} : found->second;
+    }
+};
+
+// The force field of all molecules, also of those that edits add.
+struct ForceFieldInUse {
+    ForceFieldDescription description;
     std::shared_ptr<const ForceField> force_field;
+    std::vector<std::string> structural_waters;  // names of molecules of such waters
+};
+
+// The settings that the mechanics of mobile molecules are built with.
+struct MechanicsSettings {
+    JointsDescription joints;  // `around` names a molecule in any case
+    StaticsDescription statics;
+};
+
+// The settings of grips that edits make, and where hands began.
+struct GrabSettings {
+    std::string measured_from;                 // name of a molecule, see GrabDescription
+    double spring_kcal_per_mol_angstrom2 = 0;  // stiffness of a hand's spring
+    std::vector<Vec3> start_offsets;           // Å, start of each hand from its place at rest
 };
 
 // Bonded terms of all molecules in the order of the table; empty until something mobile needs them.

@@ -28,14 +28,14 @@ std::vector<std::string_view> list_types(const AtomTable& atoms) {
     return types;
 }
 
-void refuse_neutral_groups(const SceneDescription& scene, const AtomTable& atoms) {
+void refuse_neutral_groups(const ScenePlaces& places, const AtomTable& atoms) {
     std::vector<IonicGroup> groups =
         find_ionic_groups(atoms.names, list_types(atoms), atoms.charge);
     std::erase_if(groups, [](const IonicGroup& group) { return !group.has_neutral_charges; });
     if (groups.empty()) return;
     const AtomName& first = atoms.names[groups.front().atoms.front()];
     throw LoadError(
-        scene.place_of(solvent_key),
+        places.place_of(solvent_key),
         fmt::format("the scene is in vacuum, but the molecules have EEF1-SB's neutral charges ({} "
                     "of {} {} {} is neutral, {} ionic groups in all); expected solvent = "
                     "\"eef1-sb\", or topology files without them (palpa prepare --solvent none)",
@@ -43,11 +43,11 @@ void refuse_neutral_groups(const SceneDescription& scene, const AtomTable& atoms
                     groups.size()));
 }
 
-void refuse_charges(const SceneDescription& scene, const AtomTable& atoms) {
+void refuse_charges(const ScenePlaces& places, const AtomTable& atoms) {
     const std::vector<std::string> charged =
         find_charged(atoms.names, list_types(atoms), atoms.charge);
     if (charged.empty()) return;
-    throw LoadError(scene.place_of(solvent_key),
+    throw LoadError(places.place_of(solvent_key),
                     fmt::format("EEF1-SB needs neutral charges, but {}; expected topology files "
                                 "from `palpa prepare --solvent eef1-sb`, or solvent = \"none\"",
                                 fmt::join(charged, "; ")));
@@ -56,18 +56,18 @@ void refuse_charges(const SceneDescription& scene, const AtomTable& atoms) {
 // One entry per atom: which are of molecules that the scene calls structural water.
 std::vector<std::uint8_t> find_structural(const World& world) {
     const AtomTable& atoms = world.resource<AtomTable>();
-    const SceneDescription& scene = world.resource<SceneFile>().scene;
+    const ScenePlaces& places = world.resource<ScenePlaces>();
+    const std::vector<std::string>& structural =
+        world.resource<ForceFieldInUse>().structural_waters;
     const std::vector<std::uint8_t> is_water = find_water_atoms(atoms.names, atoms.mass);
     std::vector<std::uint8_t> is_structural(atoms.size(), 0);
     world.each<Molecule>([&](Entity, const Molecule& molecule) {
-        const auto said =
-            std::ranges::find(scene.molecules, molecule.name, &MoleculeDescription::name);
-        if (said == scene.molecules.end() || !said->structural_water) return;
+        if (std::ranges::find(structural, molecule.name) == structural.end()) return;
         for (std::uint32_t i = molecule.atoms.first;
              i < molecule.atoms.first + molecule.atoms.count; ++i) {
             if (is_water[i] == 0) {
                 throw LoadError(
-                    scene.place_of(fmt::format("molecules.{}.structural_water", molecule.name)),
+                    places.place_of(fmt::format("molecules.{}.structural_water", molecule.name)),
                     fmt::format("{} is not part of a water; expected a molecule of waters only",
                                 to_string(atoms.names[i])));
             }
@@ -92,11 +92,11 @@ ForceField with_solvent(const ForceFieldDescription& description, ForceField for
 
 void set_solvation(World& world) {
     AtomTable& atoms = world.resource<AtomTable>();
-    const SceneDescription& scene = world.resource<SceneFile>().scene;
+    const ScenePlaces& places = world.resource<ScenePlaces>();
     atoms.solvation = {};
     const std::optional<Solvation> solvation = find_solvation(world);
-    if (!solvation) return refuse_neutral_groups(scene, atoms);
-    refuse_charges(scene, atoms);
+    if (!solvation) return refuse_neutral_groups(places, atoms);
+    refuse_charges(places, atoms);
     for (std::size_t i = 0; i < atoms.size(); ++i) {
         const SolvationAtom atom = solvation_atom(*solvation, i);
         atoms.solvation.volume.push_back(atom.volume);
@@ -107,10 +107,9 @@ void set_solvation(World& world) {
 }
 
 std::optional<Solvation> find_solvation(const World& world) {
-    const SceneDescription& scene = world.resource<SceneFile>().scene;
-    if (scene.force_field.solvent == Solvent::None) return std::nullopt;
+    if (world.resource<ForceFieldInUse>().description.solvent == Solvent::None) return std::nullopt;
     return assign_solvation(world.resource<AtomTable>(), eef1sb_table(), find_structural(world),
-                            scene.place_of(solvent_key));
+                            world.resource<ScenePlaces>().place_of(solvent_key));
 }
 
 }  // namespace palpa

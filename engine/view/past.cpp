@@ -3,6 +3,7 @@
 #include "simulation/components.h"
 #include "simulation/held.h"
 #include "simulation/probe.h"
+#include "simulation/remote_engine.h"
 #include "simulation/resources.h"
 #include "view/elements.h"
 #include "view/in_hand.h"
@@ -200,15 +201,14 @@ void Past::add_trail(double trail_s, FrameScene& frame) const {
 std::optional<Vec3> find_resting_place(const World& world, Entity hand) {
     constexpr std::size_t most_pairs = 2000;  // of which a search takes 0.1 s
     const Grip* const grip = world.find<Grip>(hand);
-    const SceneFile* const file = world.find_resource<SceneFile>();
-    if (!grip || !file || file->scene.engine) return std::nullopt;
+    const GrabSettings* const settings = world.find_resource<GrabSettings>();
+    if (!grip || !settings || find_remote_engine(world)) return std::nullopt;
     const std::vector<Entity> hands = find_hands(world);
     const auto slot = static_cast<std::size_t>(std::ranges::find(hands, hand) - hands.begin());
-    const std::vector<HandTables> tables = list_hands(file->scene);
-    if (slot >= tables.size()) return std::nullopt;
+    if (slot >= settings->start_offsets.size()) return std::nullopt;
     if (grip->freedom > 1) {
-        const auto& offset = tables[slot].hand.start_offset_angstrom;
-        return grip->anchor + grip->line_origin - Vec3(0, offset[1], offset[2]);
+        const Vec3& offset = settings->start_offsets[slot];
+        return grip->anchor + grip->line_origin - Vec3(0, offset.y(), offset.z());
     }
     const std::size_t pairs = held_range(world, hand).count * count_environment(world, hand);
     if (pairs > most_pairs) return std::nullopt;

@@ -655,7 +655,7 @@ TEST_CASE(
     "[simulation][edit]") {
     World world = load_world(read_scene(test::in_project("scenes/water/space.toml")));
     const bool is_adaptive = GENERATE(false, true);
-    world.resource<SceneFile>().scene.statics.method =
+    world.resource<MechanicsSettings>().statics.method =
         is_adaptive ? RelaxMethod::QuasiStatic : RelaxMethod::SecondOrder;
     const Entity hand = first_hand(world);
     set_mobility(world, {"fixed", Motion::Free, {}});

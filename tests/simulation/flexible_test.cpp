@@ -463,9 +463,9 @@ TEST_CASE("residues of two molecules with the same names are not one, where few 
     // The other one's residues go on where the first's end, in a segment of the same name.
     const auto count_joints = [](double within, bool has_same_names) {
         World world = load_peptides({"statics.relax_steps=0"});
-        SceneDescription& scene = world.resource<SceneFile>().scene;
-        scene.joints.within_angstrom = within;
-        scene.joints.around = "held";
+        JointsDescription& joints = world.resource<MechanicsSettings>().joints;
+        joints.within_angstrom = within;
+        joints.around = "held";
         BondedTerms& terms = world.resource<BondedTerms>();
         Connectivity connectivity = *terms.connectivity;
         if (has_same_names) {
