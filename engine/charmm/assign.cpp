@@ -99,10 +99,10 @@ AtomRange append(const AtomTable& added, AtomTable& table) {
     const AtomRange range{static_cast<std::uint32_t>(table.size()),
                           static_cast<std::uint32_t>(added.size())};
     const auto behind = [](auto& to, const auto& from) {
-        to.insert(to.end(), from.begin(), from.end());
+        to.write().insert(to.end(), from.begin(), from.end());
     };
+    table.positions.insert(table.positions.end(), added.positions.begin(), added.positions.end());
     behind(table.names, added.names);
-    behind(table.positions, added.positions);
     behind(table.element, added.element);
     behind(table.mass, added.mass);
     behind(table.charge, added.charge);

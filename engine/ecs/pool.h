@@ -3,6 +3,7 @@
 #include "ecs/entity.h"
 
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -11,14 +12,32 @@
 
 namespace palpa {
 
+// A component with parts that can be rebuilt from the rest of the world, such as factors of
+// matrices. A transaction keeps the component without them; who rolls it back rebuilds them.
+template <class Component>
+concept HasCaches = requires(const Component& component) {
+    { component.without_caches() } -> std::same_as<Component>;
+};
+
+// A component that knows how much memory it has beyond its own size.
+template <class Component>
+concept CountsBytes = requires(const Component& component) {
+    { component.count_bytes() } -> std::convertible_to<std::size_t>;
+};
+
 // The interface of a pool that does not depend on the component type.
 class AnyPool {
 public:
     virtual ~AnyPool() = default;
 
-    virtual std::unique_ptr<AnyPool> clone() const = 0;
+    virtual std::shared_ptr<AnyPool> clone() const = 0;
+    virtual std::shared_ptr<AnyPool> clone_without_caches() const = 0;
     // Removes the entity's component, if it has one.
     virtual void remove(Entity entity) = 0;
+    // Memory of the components, without what they share with others.
+    virtual std::size_t count_bytes() const noexcept = 0;
+
+    bool has(Entity entity) const noexcept { return is_at(place_of(entity), entity); }
 
     // In the order of their creation.
     std::span<const Entity> entities() const noexcept { return owners_; }
@@ -36,7 +55,7 @@ protected:
     std::vector<Entity> owners_;  // owner of each component
 };
 
-// There are only hundreds of entities (molecules, hands, marks), so they are found by bisection.
+// Finds entities by bisection; creating them in order appends.
 template <class Component>
 class Pool final : public AnyPool {
 public:
@@ -66,7 +85,27 @@ public:
         components_.erase(components_.begin() + at);
     }
 
-    std::unique_ptr<AnyPool> clone() const override { return std::make_unique<Pool>(*this); }
+    std::shared_ptr<AnyPool> clone() const override { return std::make_shared<Pool>(*this); }
+
+    std::shared_ptr<AnyPool> clone_without_caches() const override {
+        if constexpr (HasCaches<Component>) {
+            auto copy = std::make_shared<Pool>();
+            copy->owners_ = owners_;
+            for (const Component& component : components_)
+                copy->components_.push_back(component.without_caches());
+            return copy;
+        } else {
+            return clone();
+        }
+    }
+
+    std::size_t count_bytes() const noexcept override {
+        std::size_t bytes = owners_.size() * (sizeof(Entity) + sizeof(Component));
+        if constexpr (CountsBytes<Component>) {
+            for (const Component& component : components_) bytes += component.count_bytes();
+        }
+        return bytes;
+    }
 
 private:
     std::vector<Component> components_;

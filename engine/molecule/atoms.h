@@ -1,5 +1,6 @@
 // The table of all atoms, an array per property, and how atoms are named.
 #pragma once
+#include "core/shared_vector.h"
 #include "math/vec.h"
 
 #include <array>
@@ -117,36 +118,38 @@ inline bool has_atom(const AtomRange& range, std::size_t atom) noexcept {
     return atom >= range.first && atom - range.first < range.count;
 }
 
-// All atoms of a world; every array up to `type` has one entry per atom. Written once on loading,
-// but for `positions`, which each simulation step updates.
-// One entry per atom; what one takes of another's water (EEF1, forces/solvation.h) is
+// Solvation numbers of atoms; what one takes of another's water (EEF1, forces/solvation.h) is
 //   strength volume' exp(-((r - radius)/lambda)^2)/r^2.
-// All empty without implicit solvent.
+// One entry per atom; all empty without implicit solvent.
 struct SolvationColumns {
-    std::vector<double> volume;          // Å^3
-    std::vector<double> strength;        // kcal/mol/Å
-    std::vector<double> inverse_lambda;  // 1/Å
-    std::vector<double> radius;          // Å
+    SharedVector<double> volume;          // Å^3
+    SharedVector<double> strength;        // kcal/mol/Å
+    SharedVector<double> inverse_lambda;  // 1/Å
+    SharedVector<double> radius;          // Å
 };
 
+// All atoms of a world; every array up to `solvation` has one entry per atom. Written once on
+// loading, but for `positions`, which each simulation step updates; copies share the rest.
 struct AtomTable {
-    std::vector<AtomName> names;
-    std::vector<Vec3> positions;       // Å
-    std::vector<std::string> element;  // "O"; empty if the force field has none
-    std::vector<double> mass;          // amu
-    std::vector<double> charge;        // e
-    std::vector<double> sqrt_epsilon;  // (kcal/mol)^(1/2), root of the Lennard-Jones well depth
-    std::vector<double> half_rmin;     // Å, half the distance of the well's minimum
-    std::vector<std::uint32_t> type;   // index into `type_names`
-    std::vector<double> b_factor;      // Å^2, of the structure file; 0 where it has none
+    SharedVector<AtomName> names;
+    std::vector<Vec3> positions;        // Å
+    SharedVector<std::string> element;  // "O"; empty if the force field has none
+    SharedVector<double> mass;          // amu
+    SharedVector<double> charge;        // e
+    SharedVector<double> sqrt_epsilon;  // (kcal/mol)^(1/2), root of the Lennard-Jones well depth
+    SharedVector<double> half_rmin;     // Å, half the distance of the well's minimum
+    SharedVector<std::uint32_t> type;   // index into `type_names`
+    SharedVector<double> b_factor;      // Å^2, of the structure file; 0 where it has none
     SolvationColumns solvation;
 
     // Bonded pairs of atoms, by index.
-    std::vector<std::array<std::uint32_t, 2>> bonds;
+    SharedVector<std::array<std::uint32_t, 2>> bonds;
 
-    std::vector<std::string> type_names;  // types of the force field, each once
+    SharedVector<std::string> type_names;  // types of the force field, each once
 
     std::size_t size() const noexcept { return names.size(); }
+    // Memory, bytes; what copies share counts in equal parts.
+    std::size_t count_bytes() const noexcept;
 };
 
 // In upper case: as the table has it, or as the atom's name says (molecule/element.h). Empty where

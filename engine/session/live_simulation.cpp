@@ -31,8 +31,8 @@ LocalContactModel without_force(const LocalContactModel& contact) {
 
 void set_period(const SceneDescription& scene, World& world) {
     const double period_s = scene.period_ms * 1e-3;
-    world.resource<Clock>().period_s = period_s;
-    world.each<Contact>(
+    world.write<Clock>().period_s = period_s;
+    world.write_each<Contact>(
         [&](Entity, Contact& contact) { contact.answer.model.period_s = period_s; });
 }
 
@@ -243,7 +243,7 @@ void LiveSimulation::play(const AdoptEvent& event) {
 }
 
 void LiveSimulation::start_renewal() {
-    if (SecondOrder* const second = world_.find_resource<SecondOrder>())
+    if (SecondOrder* const second = world_.write_if<SecondOrder>())
         renewals_.start_if_pending(model_of(world_), second->settings, second->statics);
 }
 
@@ -314,7 +314,7 @@ void LiveSimulation::take_hold_anew(std::span<const std::uint32_t> last_starts) 
     ++restarts_;
     const std::vector<Entity> hands = find_hands(world_);
     for (std::size_t slot = 0; slot < hands.size(); ++slot)
-        world_.find<Contact>(hands[slot])->answer.model.start = last_starts[slot] + 1;
+        world_.write<Contact>(hands[slot])->answer.model.start = last_starts[slot] + 1;
     play(HoldEvent{});
 }
 

@@ -109,6 +109,8 @@ struct NearAtoms {
 struct Contact {
     LocalContactModel answer;  // the last one sent to the hand
     NearAtoms near;
+
+    std::size_t count_bytes() const noexcept { return 100 * near.atoms.size(); }  // about
 };
 
 // ---- of its own ---------------------------------------------------------------------------------

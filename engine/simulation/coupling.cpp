@@ -93,11 +93,11 @@ Coupling build_coupling(const CouplingDescription& coupling) {
 
 void set_coupling(const CouplingDescription& coupling, World& world) {
     world.set_resource(build_coupling(coupling));
-    if (AdaptiveState* const adaptive = world.find_resource<AdaptiveState>()) {
+    if (AdaptiveState* const adaptive = world.write_if<AdaptiveState>()) {
         if (adaptive->accuracy && coupling.feel_within_pN)
             adaptive->accuracy->set_tolerance(*coupling.feel_within_pN);
     }
-    SecondOrder* const second = world.find_resource<SecondOrder>();
+    SecondOrder* const second = world.write_if<SecondOrder>();
     if (second && coupling.feel_within_pN) {
         second->settings.tolerance =
             *coupling.feel_within_pN / units::piconewton_per_kcal_per_mol_angstrom;
@@ -105,7 +105,7 @@ void set_coupling(const CouplingDescription& coupling, World& world) {
     for (const Entity hand : find_hands(world)) {
         if (!world.find<Grip>(hand)) continue;  // it feels nothing in any mode
         update_near(world, hand);
-        LocalContactModel& contact = world.find<Contact>(hand)->answer;
+        LocalContactModel& contact = world.write<Contact>(hand)->answer;
         const std::uint32_t start = contact.model.start;
         contact = build_local_contact(world, hand, {});
         contact.model.start = start;

@@ -88,7 +88,7 @@ LocalContactModel build_still_contact(const World& world) {
 }
 
 void refresh_contact(World& world, Entity hand) {
-    Contact& contact = *world.find<Contact>(hand);
+    Contact& contact = *world.write<Contact>(hand);
     const std::uint32_t start = contact.answer.model.start;
     contact.near = {};
     if (world.find<Grip>(hand)) {
@@ -107,26 +107,26 @@ void settle_edit(World& world) {
 }
 
 // Another start: the servo puts the molecule where the model says.
-void take_hold_anew(World& world, Entity hand) { ++world.find<Contact>(hand)->answer.model.start; }
+void take_hold_anew(World& world, Entity hand) { ++world.write<Contact>(hand)->answer.model.start; }
 
 // What another world, which takes this one's place, goes on with: what hands hold there they take
 // hold of anew, where their devices are.
 void keep_clock_and_devices(const World& world, World& other) {
     world.each<Hand>([&](Entity entity, const Hand& hand) {
-        if (Hand* const held = other.find<Hand>(entity)) *held = hand;
+        if (Hand* const held = other.write<Hand>(entity)) *held = hand;
         const Contact* const now = world.find<Contact>(entity);
-        Contact* const then = other.find<Contact>(entity);
+        Contact* const then = other.write<Contact>(entity);
         if (now && then) then->answer.model.start = now->answer.model.start + 1;
     });
-    other.resource<Clock>() = world.resource<Clock>();
+    other.write<Clock>() = world.resource<Clock>();
     carry_playback(world, other);
     const RemoteEngine* const engine = find_remote_engine(world);
     if (!engine) return;
     // Its atoms are where they are; hands take hold of them there.
     other.set_resource(*engine);
-    other.resource<AtomTable>().positions = world.resource<AtomTable>().positions;
+    other.write<AtomTable>().positions = world.resource<AtomTable>().positions;
     for (const Entity hand : find_hands(other)) {
-        if (EngineHold* const hold = other.find<EngineHold>(hand)) hold->is_live = false;
+        if (EngineHold* const hold = other.write<EngineHold>(hand)) hold->is_live = false;
     }
 }
 
@@ -167,7 +167,7 @@ void release(World& world, Entity hand) {
     world.remove<Spring>(hand);
     take_hold_anew(world, hand);
     const Entity other = other_holder(world, hand, grip.molecule);
-    Mobility& mobility = *world.find<Mobility>(grip.molecule);
+    Mobility& mobility = *world.write<Mobility>(grip.molecule);
     if (other == Entity{}) {
         mobility = grip.before;
         return;
@@ -227,7 +227,7 @@ Source build_source(const World& world, Entity original, const AddEdit& edit) {
 }
 
 void place_atoms(World& world, AtomRange range, const Vec3& by) {
-    std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+    std::vector<Vec3>& positions = world.write<AtomTable>().positions;
     for (std::uint32_t i = range.first; i < range.first + range.count; ++i) positions[i] += by;
 }
 
@@ -271,7 +271,7 @@ void forget(World& world, Entity molecule) {
         if (names(mark.atoms, molecule)) gone.push_back(entity);
     });
     for (const Entity entity : gone) world.destroy(entity);
-    world.each<Grip>([&](Entity, Grip& grip) {
+    world.write_each<Grip>([&](Entity, Grip& grip) {
         if (grip.measured_from == molecule) grip.measured_from = grip.molecule;
     });
 }
@@ -299,7 +299,7 @@ void take(World& world, Entity hand, const TakeEdit& edit) {
                             edit.what, edit.what));
         }
         Grip grip = build_grip(changed, what);
-        Mobility& mobility = *changed.find<Mobility>(what.molecule);
+        Mobility& mobility = *changed.write<Mobility>(what.molecule);
         if (is_whole) {
             mobility.motion = motion_in_hand(changed, hand);
             grip.freedom = mobility.motion == Motion::WithHandle ? 6 : 3;
@@ -321,7 +321,7 @@ void let_go(World& world, Entity hand) {
 
 void put_back(World& world, Entity hand) {
     edit_whole(world, [&](World& changed) {
-        Grip* const grip = changed.find<Grip>(hand);
+        Grip* const grip = changed.write<Grip>(hand);
         if (!grip)
             refuse("the hand holds nothing that could go back; expected one that holds some");
         const Molecule& molecule = *changed.find<Molecule>(grip->molecule);
@@ -329,7 +329,7 @@ void put_back(World& world, Entity hand) {
             refuse(fmt::format("the other hand holds '{}' too; expected it to let go first",
                                molecule.name));
         }
-        AtomTable& atoms = changed.resource<AtomTable>();
+        AtomTable& atoms = changed.write<AtomTable>();
         std::ranges::copy(*changed.find<StartPlaces>(grip->molecule)->atoms,
                           atoms.positions.begin() + molecule.atoms.first);
         check_room(atoms, molecule.atoms, molecule.name, "room where it was at the start");
@@ -337,7 +337,7 @@ void put_back(World& world, Entity hand) {
                                ? atoms.positions[molecule.reference_atom]
                                : middle_of(changed, held_part_of(changed, hand));
         grip->pose = {place - grip->anchor, Quat::Identity()};
-        *changed.find<Pose>(grip->molecule) = {atoms.positions[molecule.reference_atom],
+        *changed.write<Pose>(grip->molecule) = {atoms.positions[molecule.reference_atom],
                                                Quat::Identity()};
         if (changed.find<RigidShape>(grip->molecule)) set_shape(changed, grip->molecule);
         take_hold_anew(changed, hand);
@@ -351,7 +351,7 @@ void add_molecule(World& world, const AddEdit& edit) {
         const bool is_copy = !edit.copy_of.empty();
         const Entity original = is_copy ? find_molecule(changed, edit.copy_of) : Entity{};
         Source source = build_source(changed, original, edit);
-        AtomTable& atoms = changed.resource<AtomTable>();
+        AtomTable& atoms = changed.write<AtomTable>();
         const AtomRange range = add_segment_atoms(force_field, source, atoms);
         std::uint32_t reference = range.first;
         Mobility mobility{needs_mechanics(changed) ? Motion::Free : Motion::Fixed, Shape::Rigid};
@@ -424,13 +424,13 @@ void set_mobility(World& world, const MobilityEdit& edit) {
     edit_whole(world, [&](World& changed) {
         const Entity molecule = find_molecule(changed, edit.molecule);
         bool is_held = false;
-        changed.each<Grip>([&](Entity, Grip& grip) {
+        changed.write_each<Grip>([&](Entity, Grip& grip) {
             if (grip.molecule != molecule) return;
             is_held = true;
             if (edit.motion) grip.before.motion = *edit.motion;
             if (edit.shape) grip.before.shape = *edit.shape;
         });
-        Mobility& mobility = *changed.find<Mobility>(molecule);
+        Mobility& mobility = *changed.write<Mobility>(molecule);
         if (edit.motion && !is_held) mobility.motion = *edit.motion;
         if (edit.shape) mobility.shape = *edit.shape;
     });
@@ -459,7 +459,7 @@ void set_coupling(World& world, const CouplingEdit& edit) {
 void reset(World& world) {
     World start = load_again(world);
     keep_clock_and_devices(world, start);
-    ++start.resource<Clock>().resets;
+    ++start.write<Clock>().resets;
     world = std::move(start);
 }
 
@@ -533,40 +533,7 @@ void at_place(const EditDescription& edit, const Function& function) {
     }
 }
 
-template <class Value>
-std::size_t bytes_of(const std::vector<Value>& values) noexcept {
-    return values.capacity() * sizeof(Value);
-}
-
-std::size_t bytes_of(const TorsionState& state) noexcept {
-    return bytes_of(state.angles) + bytes_of(state.turns) + bytes_of(state.shifts) +
-           bytes_of(state.motions) + bytes_of(state.positions) + bytes_of(state.forces) +
-           bytes_of(state.wrenches);
-}
-
 }  // namespace
-
-std::size_t count_bytes(const World& world) noexcept {
-    const AtomTable& atoms = world.resource<AtomTable>();
-    std::size_t bytes = bytes_of(atoms.names) + bytes_of(atoms.positions) +
-                        bytes_of(atoms.element) + 6 * bytes_of(atoms.mass) + bytes_of(atoms.bonds);
-    const TorsionState& state = world.resource<TorsionState>();
-    bytes += bytes_of(state);
-    // Pairs and their tiles, trial states and assembly of a solver: measured on HIV protease.
-    constexpr std::size_t solver_per_atom = 3000;
-    if (world.find_resource<Solver>()) bytes += solver_per_atom * state.positions.size();
-    if (world.find_resource<AdaptiveState>()) bytes += solver_per_atom * state.positions.size();
-    if (world.find_resource<SecondOrder>()) {
-        // Matrices of all coordinates: of the derivatives, their factor, and the model.
-        constexpr std::size_t doubles = 8;
-        const auto size = static_cast<std::size_t>(model_of(world).coordinates);
-        bytes += doubles * sizeof(double) * size * size;
-    }
-    world.each<Contact>([&](Entity, const Contact& contact) {
-        bytes += bytes_of(contact.near.atoms) + 80 * contact.near.atoms.size();
-    });
-    return bytes;
-}
 
 World make_edit(const World& world, const EditDescription& edit) {
     World changed = world;
@@ -636,17 +603,20 @@ void EditHistory::go(World& world, std::deque<Entry>& from, std::deque<Entry>& t
 }
 
 void EditHistory::push(World world, const Change& change, std::deque<Entry>& to) {
-    const std::size_t bytes_of_world = count_bytes(world);
-    to.push_back({std::move(world), change, bytes_of_world});
-    std::size_t bytes = 0;
-    for (const Entry& entry : undo_) bytes += entry.bytes;
-    for (const Entry& entry : redo_) bytes += entry.bytes;
-    while (undo_.size() > 1 && (undo_.size() > most_entries || bytes > most_bytes)) {
-        bytes -= undo_.front().bytes;
+    to.push_back({std::move(world), change});
+    while (undo_.size() > 1 && (undo_.size() > most_entries || count_bytes() > most_bytes)) {
         std::ranges::move(undo_.front().change.edits, std::back_inserter(dropped_edits_));
         undo_.pop_front();
         ++dropped_;
     }
+}
+
+std::size_t EditHistory::count_bytes() const {
+    std::vector<const World*> worlds;
+    for (const std::deque<Entry>* const entries : {&undo_, &redo_}) {
+        for (const Entry& entry : *entries) worlds.push_back(&entry.world);
+    }
+    return World::count_bytes(worlds);
 }
 
 }  // namespace palpa

@@ -68,12 +68,12 @@ private:
     struct Entry {
         World world;
         Change change;
-        std::size_t bytes = 0;
     };
 
     void replace(World& world, World changed, const EditDescription& edit);
     void go(World& world, std::deque<Entry>& from, std::deque<Entry>& to);
     void push(World world, const Change& change, std::deque<Entry>& to);
+    std::size_t count_bytes() const;
     Entry* end_grip(std::size_t hand) noexcept;
 
     std::deque<Entry> undo_, redo_;
@@ -81,8 +81,5 @@ private:
     std::size_t dropped_ = 0;
     bool has_changed_coupling_ = false;
 };
-
-// Approximate size of a copy of the world, bytes, without what copies share.
-std::size_t count_bytes(const World& world) noexcept;
 
 }  // namespace palpa

@@ -26,14 +26,14 @@ Vec6 find_model_pull(const World& world, const SecondOrder& second, Entity hand)
 void move_mobile(World& world, Entity hand, const Vec3& by, const Quat& turn) noexcept {
     const Grip& grip = grip_of(world, hand);
     const TorsionModel& model = model_of(world);
-    TorsionState& state = world.resource<TorsionState>();
+    TorsionState& state = world.write<TorsionState>();
     if (const std::optional<std::size_t> index = find_spring_index(world, hand)) {
         state.springs[*index].place += by;
-        world.find<Spring>(hand)->place = state.springs[*index].place;
+        world.write<Spring>(hand)->place = state.springs[*index].place;
         return;
     }
     const auto base = static_cast<std::size_t>(grip.base);
-    AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    AdaptiveState* const adaptive = world.write_if<AdaptiveState>();
     const bool turns = grip.freedom == 6 && turn.vec() != Vec3::Zero();
     if (adaptive) {
         turns ? turn_base(model, base, turn, by, state, adaptive->statics)
@@ -93,8 +93,8 @@ const LocalContactModel& local_contact_of(const World& world) noexcept {
     return contact_of(world, first_hand(world)).answer;
 }
 
-LocalContactModel& local_contact_of(World& world) noexcept {
-    Contact* const contact = world.find<Contact>(first_hand(world));
+LocalContactModel& write_local_contact(World& world) {
+    Contact* const contact = world.write<Contact>(first_hand(world));
     PALPA_ASSERT(contact);
     return contact->answer;
 }
@@ -178,7 +178,7 @@ Vec3 held_place(const World& world, Entity hand) noexcept {
 }
 
 void place_held(World& world, Entity hand, const MoleculePose& pose) noexcept {
-    Grip& grip = *world.find<Grip>(hand);
+    Grip& grip = *world.write<Grip>(hand);
     const Quat turned = (pose.orientation * grip.pose.orientation.conjugate()).normalized();
     grip.pose = pose;
     const Vec3 reference = grip.anchor + pose.place_angstrom;
@@ -187,10 +187,10 @@ void place_held(World& world, Entity hand, const MoleculePose& pose) noexcept {
         copy_positions(world);
         return;
     }
-    *world.find<Pose>(grip.molecule) = {reference, pose.orientation};
+    *world.write<Pose>(grip.molecule) = {reference, pose.orientation};
     const RigidShape& shape = *world.find<RigidShape>(grip.molecule);
     const std::uint32_t first = world.find<Molecule>(grip.molecule)->atoms.first;
-    std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+    std::vector<Vec3>& positions = world.write<AtomTable>().positions;
     const Mat3 turn = pose.orientation.toRotationMatrix();
     for (std::size_t i = 0; i < shape.atoms.size(); ++i)
         positions[first + i] = reference + turn * shape.atoms[i];
@@ -228,10 +228,10 @@ GatheredPoints::GatheredPoints(const AtomTable& atoms, std::span<const std::uint
         half_rmin.push_back(atoms.half_rmin[i]);
         type.push_back(atoms.type[i]);
         if (atoms.solvation.volume.empty()) continue;
-        solvation.volume.push_back(atoms.solvation.volume[i]);
-        solvation.strength.push_back(atoms.solvation.strength[i]);
-        solvation.inverse_lambda.push_back(atoms.solvation.inverse_lambda[i]);
-        solvation.radius.push_back(atoms.solvation.radius[i]);
+        volume.push_back(atoms.solvation.volume[i]);
+        strength.push_back(atoms.solvation.strength[i]);
+        inverse_lambda.push_back(atoms.solvation.inverse_lambda[i]);
+        radius.push_back(atoms.solvation.radius[i]);
     }
 }
 
@@ -241,7 +241,7 @@ FieldPoints GatheredPoints::view() const noexcept {
             sqrt_epsilon,
             half_rmin,
             type,
-            {solvation.volume, solvation.strength, solvation.inverse_lambda, solvation.radius}};
+            {volume, strength, inverse_lambda, radius}};
 }
 
 FieldPoints held_points(const World& world, Entity hand) noexcept {
@@ -391,9 +391,9 @@ std::optional<double> find_error_estimate(const World& world) noexcept {
 void copy_positions(World& world) {
     const TorsionState& state = world.resource<TorsionState>();
     if (state.positions.empty()) return;
-    std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+    std::vector<Vec3>& positions = world.write<AtomTable>().positions;
     const ModelAtoms& atoms = model_atoms_of(world);
-    AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    AdaptiveState* const adaptive = world.write_if<AdaptiveState>();
     if (!adaptive || !atoms.in_table.empty()) {
         put_in_table(model_of(world), atoms, state.positions, positions);
         return;

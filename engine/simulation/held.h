@@ -22,7 +22,8 @@ const Grip& grip_of(const World& world, Entity hand) noexcept;
 const Contact& contact_of(const World& world, Entity hand) noexcept;
 // That of the first hand.
 const LocalContactModel& local_contact_of(const World& world) noexcept;
-LocalContactModel& local_contact_of(World& world) noexcept;
+// The same for writing.
+LocalContactModel& write_local_contact(World& world);
 
 // True if the hand holds a part of the mechanics, false for a rigid molecule outside of them.
 bool is_mobile(const World& world, Entity hand) noexcept;
@@ -72,7 +73,8 @@ struct GatheredPoints {
     std::vector<Vec3> positions;
     std::vector<double> charge, sqrt_epsilon, half_rmin;
     std::vector<std::uint32_t> type;
-    SolvationColumns solvation;
+    // Empty without implicit solvent.
+    std::vector<double> volume, strength, inverse_lambda, radius;
 
     GatheredPoints(const AtomTable& atoms, std::span<const std::uint32_t> numbers);
     FieldPoints view() const noexcept;

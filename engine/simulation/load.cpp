@@ -65,7 +65,7 @@ std::uint32_t find_reference_atom(const MoleculeDescription& molecule, const Ato
 
 void add_molecule(const SceneDescription& scene, const MoleculeDescription& molecule,
                   const ForceField& force_field, SourceFiles& files, World& world) {
-    AtomTable& atoms = world.resource<AtomTable>();
+    AtomTable& atoms = world.write<AtomTable>();
     Source source =
         scene.engine
             ? find_engine_source(molecule.structure, molecule.topology, molecule.segment, files)
@@ -94,7 +94,7 @@ RelaxProgressFunction tell_relaxing(const StageFunction& on_stage) {
 void relax_grabbed(const SceneDescription& scene, const HandTables& tables, Entity hand,
                    World& world) {
     const Molecule& grabbed = *world.find<Molecule>(grip_of(world, hand).molecule);
-    AtomTable& atoms = world.resource<AtomTable>();
+    AtomTable& atoms = world.write<AtomTable>();
     std::vector<std::uint32_t> others;
     for (const AtomRange& range : environment_of(world, hand)) {
         for (std::uint32_t i = 0; i < range.count; ++i) others.push_back(range.first + i);
@@ -112,7 +112,7 @@ void relax_grabbed(const SceneDescription& scene, const HandTables& tables, Enti
                         grabbed.name, report.force * units::newton_per_kcal_per_mol_angstrom * 1e12,
                         report.evaluations));
     }
-    std::optional<RelaxReport>& rigid = world.resource<StartReport>().rigid;
+    std::optional<RelaxReport>& rigid = world.write<StartReport>().rigid;
     if (!rigid) rigid = report;
 }
 
@@ -146,7 +146,7 @@ double find_start(const SceneDescription& scene, const HandTables& tables, Entit
 
 void start_grabbed(const SceneDescription& scene, const HandTables& tables, Entity hand,
                    World& world) {
-    Grip& grip = *world.find<Grip>(hand);
+    Grip& grip = *world.write<Grip>(hand);
     const Molecule& grabbed = *world.find<Molecule>(grip.molecule);
     const Molecule& origin = *world.find<Molecule>(grip.measured_from);
     const bool on_line = grip.freedom == 1;
@@ -237,7 +237,7 @@ void add_hands(const SceneDescription& scene, World& world) {
         AtomsOf part = find_part_at_first(scene, tables, world);
         const bool is_whole = part.atoms.empty();
         Grip grip = build_grip(scene, tables, is_whole, world);
-        world.each<Grip>([&](Entity holder, Grip& other) {
+        world.write_each<Grip>([&](Entity holder, Grip& other) {
             if (other.molecule != grip.molecule) return;
             // Who holds it as a whole knows what it is without hands.
             (is_whole ? other : grip).before = (is_whole ? grip : other).before;

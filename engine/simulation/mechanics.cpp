@@ -525,11 +525,11 @@ void set_mechanics(TorsionModel model, ModelAtoms atoms, std::span<const HeldPar
     fix_held(held, model);
     TorsionState state = build_torsion_state(model);
     std::size_t next = 0;
-    world.each<Grip>([&](Entity hand, Grip& grip) {
+    world.write_each<Grip>([&](Entity hand, Grip& grip) {
         const HeldPart& part = held[next++];
         grip.base = static_cast<std::int32_t>(part.base);
         if (!part.spring) return;
-        world.find<Spring>(hand)->place =
+        world.write<Spring>(hand)->place =
             grip.is_new ? find_centre_of_mass(model, part.spring->atoms, state.positions)
                         : Vec3(grip.anchor + grip.pose.place_angstrom);
     });
@@ -540,7 +540,7 @@ void set_mechanics(TorsionModel model, ModelAtoms atoms, std::span<const HeldPar
     settings.method = find_method(world, model.coordinates);
     if (settings.method == RelaxMethod::QuasiStatic)
         world.set_resource(build_adaptive(settings, model, held, world));
-    world.set_resource(Solver{settings, build_quasi_statics(model), {}});
+    world.set_resource(Solver{settings, build_quasi_statics(model)});
     world.set_resource(std::move(state));
     world.set_resource(Mechanics{std::make_shared<const TorsionModel>(std::move(model)),
                                  std::make_shared<const ModelAtoms>(std::move(atoms))});
@@ -582,7 +582,7 @@ void clear_mechanics(World& world) {
     world.remove_resource<AdaptiveState>();
     world.remove_resource<SecondOrder>();
     world.remove_resource<ErrorEstimate>();
-    world.each<Grip>([](Entity, Grip& grip) { grip.base = -1; });
+    world.write_each<Grip>([](Entity, Grip& grip) { grip.base = -1; });
 }
 
 }  // namespace
@@ -599,14 +599,14 @@ bool needs_mechanics(const World& world) {
 }
 
 const BondedTerms& bonded_terms(World& world) {
-    BondedTerms& terms = world.resource<BondedTerms>();
-    if (terms.topology) return terms;
+    const BondedTerms& present = world.resource<BondedTerms>();
+    if (present.topology) return present;
     check_segments(world);
     const ForceField& force_field = *world.resource<ForceFieldInUse>().force_field;
     // Several molecules may be of one file.
     std::map<const Structure*, std::shared_ptr<const Connectivity>> generated;
     auto all = std::make_shared<Connectivity>();
-    world.each<Molecule, Source>([&](Entity, const Molecule&, Source& source) {
+    world.write_each<Source, Molecule>([&](Entity, Source& source, const Molecule&) {
         if (!source.connectivity) {
             std::shared_ptr<const Connectivity>& of_file = generated[source.structure.get()];
             if (!of_file)
@@ -626,9 +626,7 @@ const BondedTerms& bonded_terms(World& world) {
     });
     auto topology = std::make_shared<Topology>(build_topology(*all, force_field));
     topology->solvation = find_solvation(world);
-    terms.topology = std::move(topology);
-    terms.connectivity = std::move(all);
-    return terms;
+    return world.set_resource(BondedTerms{std::move(all), std::move(topology)});
 }
 
 void rebuild_mechanics(World& world) {
@@ -658,19 +656,12 @@ bool has_left_region(const World& world) noexcept {
 }
 
 void renew_region(World& world) noexcept {
-    // Matrices of the old region are not copied: they are the most of it.
-    std::optional<SecondOrder> old;
-    if (SecondOrder* const second = world.find_resource<SecondOrder>()) {
-        old = std::move(*second);
-        world.remove_resource<SecondOrder>();
-    }
     try {
         World renewed = world;
         rebuild_mechanics(renewed);
         world = std::move(renewed);
     } catch (const LoadError&) {
-        if (old) world.set_resource(std::move(*old));
-        world.resource<RegionCentre>().stays = true;
+        world.write<RegionCentre>().stays = true;
     }
 }
 
@@ -696,7 +687,7 @@ void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_rel
     to_rest.step.forces = build_settings(world).step.forces;
     to_rest.force_tolerance = s.rest_kcal_per_mol;
     to_rest.steps = static_cast<std::size_t>(s.relax_steps);
-    StartReport& report = world.resource<StartReport>();
+    StartReport& report = world.write<StartReport>();
     report.joints = plan.joints;
     report.joints_held = plan.joints_held;
     report.joints_at_rest = relax_joints(loose, to_rest, rest, statics, on_relax);
@@ -705,10 +696,75 @@ void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_rel
                         "the energy at the start is not finite; expected atoms that do not "
                         "overlap, with sensible charges and parameters");
     }
-    put_in_table(loose, plan.atoms, rest.positions, world.resource<AtomTable>().positions);
+    put_in_table(loose, plan.atoms, rest.positions, world.write<AtomTable>().positions);
     TorsionModel model = build_model(world, plan, plan.bases);
     set_mechanics(std::move(model), plan.atoms, held, world);
     copy_positions(world);
+}
+
+namespace {
+
+void keep_history(const AdaptiveStatics& from, AdaptiveStatics& to) {
+    to.h = from.h;
+    to.is_guided = from.is_guided;
+    to.steps_since_choice = from.steps_since_choice;
+    to.choices = from.choices;
+    to.renewals = from.renewals;
+    to.rebuilds = from.rebuilds;
+    to.memory.evaluations = from.memory.evaluations;
+}
+
+}  // namespace
+
+AdaptiveState AdaptiveState::without_caches() const {
+    AdaptiveState kept;
+    kept.settings = settings;
+    keep_history(statics, kept.statics);
+    kept.budget = budget;
+    kept.accuracy = accuracy;
+    kept.rendered = rendered;
+    kept.choose_every = choose_every;
+    kept.mobility_weights = mobility_weights;
+    kept.weighs_hand_proximity = weighs_hand_proximity;
+    kept.near_to = near_to;
+    kept.lacks_caches = true;
+    return kept;
+}
+
+SecondOrder SecondOrder::without_caches() const {
+    SecondOrder kept;
+    kept.settings = settings;
+    kept.statics.renewals.lineariser.held = statics.renewals.lineariser.held;
+    kept.hands = hands;
+    kept.delay_s = delay_s;
+    kept.due = due;
+    kept.most_evaluations = most_evaluations;
+    kept.evaluation_us = evaluation_us;
+    kept.snap = snap;
+    kept.lacks_caches = true;
+    return kept;
+}
+
+ErrorEstimate ErrorEstimate::without_caches() const {
+    return {settings, held, {}, steps, last_pN, felt_pN, evaluations};
+}
+
+// Pairs and their tiles, trial states and assembly of a solver: measured on HIV protease.
+constexpr std::size_t bytes_of_solver_per_atom = 3000;
+
+std::size_t Solver::count_bytes() const noexcept {
+    return bytes_of_solver_per_atom * statics.trial.positions.size();
+}
+
+std::size_t AdaptiveState::count_bytes() const noexcept {
+    return bytes_of_solver_per_atom * statics.across_forces.size();
+}
+
+std::size_t SecondOrder::count_bytes() const noexcept {
+    // Matrices of all coordinates: of the derivatives, their factor, and the model.
+    constexpr std::size_t doubles = 8;
+    const auto size = static_cast<std::size_t>(statics.at.size());
+    return doubles * sizeof(double) * size * size;
 }
 
 World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
@@ -747,9 +803,8 @@ World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
 void start_mechanics(World& world) {
     if (!has_mobile(world)) return;
     const TorsionModel& model = model_of(world);
-    TorsionState& state = world.resource<TorsionState>();
-    Solver& solver = world.resource<Solver>();
-    if (AdaptiveState* const adaptive = world.find_resource<AdaptiveState>()) {
+    TorsionState& state = world.write<TorsionState>();
+    if (AdaptiveState* const adaptive = world.write_if<AdaptiveState>()) {
         prepare_choice(world);
         world.each<Grip>([&](Entity hand, const Grip& grip) {
             if (grip.base >= 0 && holds_whole(world, hand))
@@ -759,10 +814,33 @@ void start_mechanics(World& world) {
         (void)update_adaptive_forces(model, adaptive->settings, state, adaptive->statics);
         return;
     }
+    Solver& solver = world.write<Solver>();
     update_forces(model, solver.settings.step.forces, solver.statics.memory, state);
-    if (SecondOrder* const second = world.find_resource<SecondOrder>())
+    if (SecondOrder* const second = world.write_if<SecondOrder>())
         start_second_order(model, second->settings, state, second->statics);
-    solver.safe = state;
+}
+
+void restore_caches(World& world) noexcept {
+    if (!has_mobile(world)) return;
+    const TorsionModel& model = model_of(world);
+    const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    if (adaptive && adaptive->lacks_caches) {
+        AdaptiveState& restored = world.write<AdaptiveState>();
+        AdaptiveStatics statics = build_adaptive_statics(model);
+        keep_history(restored.statics, statics);
+        restored.statics = std::move(statics);
+        restored.lacks_caches = false;
+        (void)update_adaptive_forces(model, restored.settings, world.write<TorsionState>(),
+                                     restored.statics);
+    }
+    // The next step linearises.
+    const SecondOrder* const second = world.find_resource<SecondOrder>();
+    if (second && second->lacks_caches) {
+        SecondOrder& restored = world.write<SecondOrder>();
+        HeldParts held = restored.statics.renewals.lineariser.held;
+        restored.statics = build_second_order_statics(model, std::move(held));
+        restored.lacks_caches = false;
+    }
 }
 
 void move_held(World& world, const Vec3& by) {
@@ -778,17 +856,17 @@ RelaxStepReport relax_step(World& world) {
 }
 
 void put_state(World& world, const TorsionState& state) {
-    world.resource<TorsionState>() = state;
-    world.resource<Solver>().statics.h = 0;
-    if (AdaptiveState* const adaptive = world.find_resource<AdaptiveState>()) {
+    world.write<TorsionState>() = state;
+    world.write<Solver>().statics.h = 0;
+    if (AdaptiveState* const adaptive = world.write_if<AdaptiveState>()) {
         adaptive->statics = build_adaptive_statics(model_of(world));
         adaptive->near_to.clear();
     }
-    if (SecondOrder* const second = world.find_resource<SecondOrder>()) {
+    if (SecondOrder* const second = world.write_if<SecondOrder>()) {
         HeldParts held = second->statics.renewals.lineariser.held;
         second->statics = build_second_order_statics(model_of(world), std::move(held));
     }
-    update_positions(model_of(world), world.resource<TorsionState>());
+    update_positions(model_of(world), world.write<TorsionState>());
     return_ends(world);
     start_mechanics(world);
 }

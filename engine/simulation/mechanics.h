@@ -63,7 +63,10 @@ RelaxStepReport relax_step(World& world);
 // Starts from another state without any history.
 void put_state(World& world, const TorsionState& state);
 
-// Makes the present state the start: its forces, and the state that a failed step returns to.
+// Computes the forces of the present state, from which steps start.
 void start_mechanics(World& world);
+
+// Rebuilds the caches of the mechanics after a transaction that was rolled back.
+void restore_caches(World& world) noexcept;
 
 }  // namespace palpa

@@ -30,7 +30,8 @@ std::vector<ReplacedPair> build_replaced_pairs(const ForceField& force_field,
 }
 
 template <class Value>
-void erase(AtomRange range, std::vector<Value>& column) {
+void erase(AtomRange range, SharedVector<Value>& shared) {
+    std::vector<Value>& column = shared.write();
     const auto first = column.begin() + range.first;
     column.erase(first, first + range.count);
 }
@@ -38,7 +39,7 @@ void erase(AtomRange range, std::vector<Value>& column) {
 // In the order of the atoms that have them, as loading numbers them.
 void renumber_types(AtomTable& atoms) {
     std::vector<std::string> names;
-    for (std::uint32_t& type : atoms.type) {
+    for (std::uint32_t& type : atoms.type.write()) {
         const std::string& name = atoms.type_names[type];
         const auto found = std::ranges::find(names, name);
         type = static_cast<std::uint32_t>(found - names.begin());
@@ -115,10 +116,11 @@ void set_start_places(World& world, Entity entity) {
 
 void remove_atoms(World& world, Entity entity) {
     const AtomRange gone = world.find<Molecule>(entity)->atoms;
-    AtomTable& atoms = world.resource<AtomTable>();
+    AtomTable& atoms = world.write<AtomTable>();
     world.set_resource(AtomEdition{std::make_shared<int>()});
     erase(gone, atoms.names);
-    erase(gone, atoms.positions);
+    const auto first = atoms.positions.begin() + gone.first;
+    atoms.positions.erase(first, first + gone.count);
     erase(gone, atoms.element);
     erase(gone, atoms.mass);
     erase(gone, atoms.charge);
@@ -126,17 +128,18 @@ void remove_atoms(World& world, Entity entity) {
     erase(gone, atoms.half_rmin);
     erase(gone, atoms.type);
     erase(gone, atoms.b_factor);
-    std::erase_if(atoms.bonds, [&](const std::array<std::uint32_t, 2>& bond) {
+    std::vector<std::array<std::uint32_t, 2>>& bonds = atoms.bonds.write();
+    std::erase_if(bonds, [&](const std::array<std::uint32_t, 2>& bond) {
         return has_atom(gone, bond[0]) || has_atom(gone, bond[1]);
     });
-    for (auto& bond : atoms.bonds) {
+    for (auto& bond : bonds) {
         for (std::uint32_t& atom : bond) {
             if (atom >= gone.first) atom -= gone.count;
         }
     }
     renumber_types(atoms);
     world.destroy(entity);
-    world.each<Molecule>([&](Entity, Molecule& molecule) {
+    world.write_each<Molecule>([&](Entity, Molecule& molecule) {
         if (molecule.atoms.first < gone.first) return;
         molecule.atoms.first -= gone.count;
         molecule.reference_atom -= gone.count;

@@ -11,7 +11,7 @@
 namespace palpa {
 
 void note_rendered_force(World& world, const StepInput& input) {
-    AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    AdaptiveState* const adaptive = world.write_if<AdaptiveState>();
     if (!adaptive) return;
     adaptive->rendered.reset();
     if (!adaptive->accuracy || !input.hands.front().molecule) return;
@@ -29,7 +29,7 @@ void note_rendered_force(World& world, const StepInput& input) {
 }
 
 void find_error(World& world) {
-    ErrorEstimate* const estimate = world.find_resource<ErrorEstimate>();
+    ErrorEstimate* const estimate = world.write_if<ErrorEstimate>();
     const Entity hand = first_hand(world);
     const Grip* const grip = world.find<Grip>(hand);
     if (!estimate || !grip || !is_mobile(world, hand)) return;
@@ -56,10 +56,10 @@ void find_error(World& world) {
 }
 
 void estimate_error(World& world) {
-    ErrorEstimate* const estimate = world.find_resource<ErrorEstimate>();
-    std::optional<RelaxStepReport>& report = world.resource<StepReport>().relaxed;
+    ErrorEstimate* const estimate = world.write_if<ErrorEstimate>();
+    std::optional<RelaxStepReport>& report = world.write<StepReport>().relaxed;
     if (!estimate || !report || !report->is_finite) return;
-    AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    AdaptiveState* const adaptive = world.write_if<AdaptiveState>();
     AccuracyController* const accuracy =
         adaptive && adaptive->accuracy ? &*adaptive->accuracy : nullptr;
     if (accuracy) accuracy->add_step({report->active, report->steps});
@@ -92,10 +92,10 @@ void note_evaluations(const World& world, const StepReport& report, SecondOrder&
 }  // namespace
 
 void note_time(World& world) {
-    SecondOrder* const second = world.find_resource<SecondOrder>();
+    SecondOrder* const second = world.write_if<SecondOrder>();
     if (second && world.resource<StepReport>().relaxed)
         note_evaluations(world, world.resource<StepReport>(), *second);
-    AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    AdaptiveState* const adaptive = world.write_if<AdaptiveState>();
     const StepReport& report = world.resource<StepReport>();
     if (!adaptive || !adaptive->budget || !report.relaxed || report.relaxed->is_estimating) return;
     if (report.relaxed->is_chosen || report.relaxed->is_renewed) {

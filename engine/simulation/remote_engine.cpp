@@ -360,10 +360,11 @@ EngineAtoms find_engine_atoms(const SceneDescription& scene, const AtomTable& ta
 void set_remote_engine(const SceneDescription& scene, World& world) {
     RemoteEngine engine;
     engine.settings = *scene.engine;
-    engine.atoms = find_engine_atoms(scene, world.resource<AtomTable>());
+    engine.atoms =
+        std::make_shared<const EngineAtoms>(find_engine_atoms(scene, world.resource<AtomTable>()));
     engine.listed_in = find_list_of_atoms(scene);
     engine.client =
-        std::make_shared<ImdClient>(client_options(scene, engine.atoms.in_table.size()));
+        std::make_shared<ImdClient>(client_options(scene, engine.atoms->in_table.size()));
     world.set_resource(std::move(engine));
 }
 
@@ -377,13 +378,13 @@ void hold_engine_atoms(World& world) {
         if (world.find<EngineHold>(hand)) world.remove<EngineHold>(hand);
     }
     std::vector<std::pair<Entity, EngineHold>> holds;
-    world.each<Grip>([&](Entity hand, Grip& grip) {
+    world.write_each<Grip>([&](Entity hand, Grip& grip) {
         std::vector<std::uint32_t> atoms = numbers_of(world, held_part_of(world, hand));
         const EngineHold* const before = world.find<EngineHold>(hand);
         const bool is_same = before && before->atoms == atoms;
         holds.emplace_back(hand, is_same ? *before : build_hold(table, std::move(atoms)));
         const EngineHold& hold = holds.back().second;
-        world.find<Spring>(hand)->place =
+        world.write<Spring>(hand)->place =
             is_same ? Vec3(grip.anchor + grip.pose.place_angstrom) : hold.smoothed;
         grip.base = -1;
     });
@@ -393,7 +394,7 @@ void hold_engine_atoms(World& world) {
 }
 
 bool take_newest_frame(World& world) {
-    RemoteEngine& engine = world.resource<RemoteEngine>();
+    RemoteEngine& engine = world.write<RemoteEngine>();
     ImdClient& client = *engine.client;
     const double begin = wall_clock_s();
     if (client.state() == ImdState::Closed) client.connect(begin);
@@ -412,11 +413,11 @@ bool take_newest_frame(World& world) {
     if (is_new) {
         note_frame(engine, time_s);
         engine.frames = client.frames();
-        std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+        std::vector<Vec3>& positions = world.write<AtomTable>().positions;
         const std::vector<Vec3>& sent = client.frame()->coordinates;
         for (std::size_t i = 0; i < sent.size(); ++i) {
-            if (engine.atoms.in_table[i] >= 0)
-                positions[static_cast<std::size_t>(engine.atoms.in_table[i])] = sent[i];
+            if (engine.atoms->in_table[i] >= 0)
+                positions[static_cast<std::size_t>(engine.atoms->in_table[i])] = sent[i];
         }
     }
     // Also one that has ended meanwhile.
@@ -433,7 +434,7 @@ bool lacks_coordinates(const SceneDescription& scene) {
 }
 
 void await_engine(World& world) {
-    RemoteEngine& engine = world.resource<RemoteEngine>();
+    RemoteEngine& engine = world.write<RemoteEngine>();
     const bool before = std::exchange(engine.is_awaited, true);
     const bool came = take_newest_frame(world);
     engine.is_awaited = before;
@@ -459,14 +460,14 @@ std::string advise(const RemoteEngine& engine) {
         case ImdLack::Atoms:
             return fmt::format(
                 "{} lists {} atoms, the engine sends {}: give the structure of what it sends",
-                engine.listed_in, engine.atoms.in_table.size(), engine.client->other_atoms());
+                engine.listed_in, engine.atoms->in_table.size(), engine.client->other_atoms());
         default:
             return usual;
     }
 }
 
 void leave_engine(World& world) {
-    RemoteEngine* const engine = world.find_resource<RemoteEngine>();
+    RemoteEngine* const engine = world.write_if<RemoteEngine>();
     if (!engine || engine->client->state() == ImdState::Closed) return;
     constexpr double most_s = 1;
     constexpr int slice_ms = 10;
@@ -479,7 +480,7 @@ void leave_engine(World& world) {
 }
 
 void pause_engine(World& world, bool is_paused) {
-    RemoteEngine* const engine = world.find_resource<RemoteEngine>();
+    RemoteEngine* const engine = world.write_if<RemoteEngine>();
     if (!engine) return;
     is_paused ? engine->client->pause() : engine->client->resume();
     engine->client->poll(wall_clock_s(), 0);

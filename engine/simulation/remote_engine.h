@@ -28,7 +28,7 @@ struct EngineAtoms {
 // Resource of a world. Copies of a world share the connection.
 struct RemoteEngine {
     EngineDescription settings;
-    EngineAtoms atoms;
+    std::shared_ptr<const EngineAtoms> atoms;
     std::shared_ptr<ImdClient> client;
     std::string listed_in;    // file that lists its atoms, for messages
     bool is_awaited = false;  // steps wait for a frame (without a window)

@@ -137,7 +137,8 @@ struct GatheredSprings {
 struct Solver {
     RelaxSettings settings;  // for every step
     QuasiStatics statics;
-    TorsionState safe;  // state after the last step
+
+    std::size_t count_bytes() const noexcept;
 };
 
 struct Ball {
@@ -162,6 +163,10 @@ struct AdaptiveState {
     bool weighs_hand_proximity = false;
     std::vector<Ball> near_to;  // region around each hand
     std::size_t copied = 0;     // number of cluster rebuilds at the last full copy of positions
+    bool lacks_caches = false;  // all of `statics` but its step length, guides and counters
+
+    AdaptiveState without_caches() const;
+    std::size_t count_bytes() const noexcept;
 };
 
 // If steps do not relax everything: the difference between the force on the first hand and that of
@@ -174,6 +179,8 @@ struct ErrorEstimate {
     std::optional<double> last_pN;
     Vec3 felt_pN = Vec3::Zero();  // force at that time
     std::size_t evaluations = 0;  // number of evaluations used
+
+    ErrorEstimate without_caches() const;
 };
 
 // A renewal that releases more energy than this (kcal/mol) is a snap: a minimum had vanished.
@@ -203,6 +210,11 @@ struct SecondOrder {
         std::uint64_t step = 0;
     };
     std::optional<Snap> snap;
+    bool lacks_caches = false;  // all of `statics` but what hands hold
+
+    // Another thread may be making the pending renewal meanwhile.
+    SecondOrder without_caches() const;
+    std::size_t count_bytes() const noexcept;
 };
 
 // How the scene was relaxed at loading.

@@ -91,7 +91,7 @@ ForceField with_solvent(const ForceFieldDescription& description, ForceField for
 }
 
 void set_solvation(World& world) {
-    AtomTable& atoms = world.resource<AtomTable>();
+    AtomTable& atoms = world.write<AtomTable>();
     const ScenePlaces& places = world.resource<ScenePlaces>();
     atoms.solvation = {};
     const std::optional<Solvation> solvation = find_solvation(world);

@@ -1,7 +1,5 @@
 #include "simulation/step.h"
 
-#include "simulation/components.h"
-#include "simulation/held.h"
 #include "simulation/mechanics.h"
 #include "simulation/observe.h"
 #include "simulation/systems/choose_active.h"
@@ -15,9 +13,7 @@
 #include "simulation/systems/relax.h"
 
 #include <chrono>
-#include <cstddef>
 #include <utility>
-#include <vector>
 
 namespace palpa {
 namespace {
@@ -37,37 +33,12 @@ constexpr System systems[] = {
     measure,          // what can be read
 };
 
-// What a step may change, as it was.
-struct Before {
-    std::vector<MoleculePose> grips;
-    std::vector<std::pair<Entity, Vec3>> ends;
-    MobileCoordinates mobile;
-};
-
-Before remember(const World& world) {
-    Before before{{}, {}, save_mobile(world)};
-    world.each<Spring>([&](Entity entity, const Spring& spring) {
-        before.ends.emplace_back(entity, spring.place);
-    });
-    world.each<Grip>([&](Entity, const Grip& grip) { before.grips.push_back(grip.pose); });
-    return before;
-}
-
-void go_back(const Before& before, World& world) {
-    restore_mobile(before.mobile, world);
-    for (const auto& [entity, place] : before.ends) {
-        if (Spring* const spring = world.find<Spring>(entity)) spring->place = place;
-    }
-    gather_springs(world, {});
-    std::size_t next = 0;
-    world.each<Grip>([&](Entity hand, Grip& grip) {
-        const MoleculePose& pose = before.grips[next++];
-        if (is_mobile(world, hand)) {
-            grip.pose = pose;  // its place is one of those coordinates
-        } else {
-            place_held(world, hand, pose);
-        }
-    });
+// Returns the world to what it was before the step, but for the report.
+void go_back(World& world) {
+    StepReport report = world.resource<StepReport>();
+    world.roll_back();
+    restore_caches(world);
+    world.set_resource(std::move(report));
 }
 
 }  // namespace
@@ -78,22 +49,25 @@ const StepReport& step_world(World& world, const StepInput& input) noexcept {
         if (input.await_renewal) input.await_renewal();
         renew_region(world);
     }
-    StepReport& report = world.resource<StepReport>();
-    report = {};
-    const Before before = remember(world);
+    world.begin();
+    world.set_resource(StepReport{});
     note_rendered_force(world, input);
     for (const System system : systems) {
         system(world, input);
-        if (report.finite) continue;
+        if (!world.resource<StepReport>().finite) break;
+    }
+    if (world.resource<StepReport>().finite) {
+        world.commit();
+    } else {
+        // Another thread may be filling caches.
         if (input.await_renewal) input.await_renewal();
-        if (system != follow_hands) go_back(before, world);  // which has moved nothing then
-        break;
+        go_back(world);
     }
     estimate_error(world);
     const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
-    report.took_us = input.took_us.value_or(took.count());
+    world.write<StepReport>().took_us = input.took_us.value_or(took.count());
     note_time(world);
-    return report;
+    return world.resource<StepReport>();
 }
 
 const StepReport& step_world(World& world, const HandPose& hand,

@@ -73,6 +73,13 @@ void update_where(const TorsionModel& model, TorsionState& state, F&& is_wanted)
 
 }  // namespace
 
+std::size_t TorsionState::count_bytes() const noexcept {
+    const auto bytes_of = [](const auto&... vectors) {
+        return ((vectors.size() * sizeof(vectors[0])) + ...);
+    };
+    return bytes_of(angles, turns, shifts, motions, positions, forces, wrenches);
+}
+
 TorsionState build_torsion_state(const TorsionModel& model) {
     const std::size_t bodies = bodies_of(model).size(), molecules = model.bases.size();
     TorsionState state;

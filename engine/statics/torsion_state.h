@@ -54,6 +54,7 @@ struct TorsionState {
     Coordinates coordinate_forces;  // kcal/mol/rad, kcal/mol/Å
 
     double energy() const noexcept { return terms.total() + spring_energy; }
+    std::size_t count_bytes() const noexcept;  // memory
 };
 
 // The state at the reference; only positions are computed.

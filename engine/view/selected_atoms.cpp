@@ -176,10 +176,11 @@ std::string expression_of(const AtomDirectory& directory, std::uint32_t atom) {
 // It is evaluated for an atom that is in none of them.
 bool names_only(const std::string& expression, std::span<const std::string> molecules) {
     AtomTable one;
-    one.names.resize(1);
-    one.positions.assign(1, Vec3::Zero());
-    one.element.resize(1);
-    one.mass = one.charge = {0};
+    one.names.push_back({});
+    one.positions.push_back(Vec3::Zero());
+    one.element.push_back({});
+    one.mass.push_back(0);
+    one.charge.push_back(0);
     const std::vector<SecondaryStructure> structure(1);
     std::vector<NamedRange> ranges;
     for (const std::string& molecule : molecules) ranges.push_back({molecule, {}});

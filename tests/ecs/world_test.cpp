@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cstddef>
+#include <iterator>
 #include <map>
+#include <memory>
 #include <optional>
 #include <random>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,9 +27,9 @@ struct Name {
 };
 struct Mark {};
 
-std::vector<int> numbers_in_order(World& world) {
+std::vector<int> numbers_in_order(const World& world) {
     std::vector<int> numbers;
-    world.each<Number>([&](Entity, Number& number) { numbers.push_back(number.value); });
+    world.each<Number>([&](Entity, const Number& number) { numbers.push_back(number.value); });
     return numbers;
 }
 
@@ -58,29 +62,6 @@ TEST_CASE("a handle dies with its entity, and is never given to another", "[ecs]
     CHECK(world.find<Number>(old) == nullptr);
     world.remove<Number>(old);
     CHECK(world.find<Number>(young)->value == 7);
-}
-
-TEST_CASE("a destroyed entity that is restored has its handle and its place again",
-          "[ecs][world]") {
-    World world;
-    std::vector<Entity> entities;
-    for (int i = 0; i < 4; ++i) {
-        entities.push_back(world.create());
-        world.set(entities.back(), Number{i});
-    }
-    world.destroy(entities[1]);
-    CHECK(numbers_in_order(world) == std::vector{0, 2, 3});
-
-    world.restore(entities[1]);
-
-    CHECK(world.is_alive(entities[1]));
-    CHECK(world.entity_count() == 4);
-    CHECK(world.find<Number>(entities[1]) == nullptr);
-    world.set(entities[1], Number{1});
-    CHECK(numbers_in_order(world) == std::vector{0, 1, 2, 3});
-    world.restore(entities[1]);  // it is alive: nothing happens
-    CHECK(world.find<Number>(entities[1])->value == 1);
-    CHECK(world.create() > entities[3]);
 }
 
 TEST_CASE("setting a component again replaces it", "[ecs][world]") {
@@ -120,8 +101,8 @@ TEST_CASE("a copy of a world is independent of it", "[ecs][world]") {
     world.set_resource(Number{5});
 
     World copy = world;
-    copy.find<Name>(first)->text = "b";
-    copy.resource<Number>().value = 6;
+    copy.write<Name>(first)->text = "b";
+    copy.write<Number>().value = 6;
     copy.destroy(second);
 
     CHECK(world.find<Name>(first)->text == "a");
@@ -145,7 +126,7 @@ TEST_CASE("a resource is there once, and no entity's", "[ecs][world]") {
     CHECK(numbers_in_order(world) == std::vector{3});
     CHECK(world.find<Number>(Entity{}) == nullptr);
     world.remove<Number>(Entity{});
-    CHECK(std::as_const(world).resource<Number>().value == 12);
+    CHECK(world.resource<Number>().value == 12);
     world.remove_resource<Number>();
     CHECK(world.find_resource<Number>() == nullptr);
     CHECK(numbers_in_order(world) == std::vector{3});
@@ -163,15 +144,17 @@ TEST_CASE("a query visits the entities that have all components, in the order of
     for (const int i : {3, 1, 5}) world.set(entities[i], Mark{});
     std::vector<Entity> visited;
 
-    world.each<Number, Name, Mark>([&](Entity entity, Number& number, const Name& name, Mark&) {
-        visited.push_back(entity);
-        CHECK(name.text == std::to_string(number.value));
-        number.value += 100;
-    });
+    const World& reads = world;
+    world.write_each<Number, Name, Mark>(
+        [&](Entity entity, Number& number, const Name& name, const Mark&) {
+            visited.push_back(entity);
+            CHECK(name.text == std::to_string(number.value));
+            number.value += 100;
+        });
 
     CHECK(visited == std::vector{entities[3], entities[5]});
     int sum = 0;
-    std::as_const(world).each<Number, Mark>(
+    reads.each<Number, Mark>(
         [&](Entity, const Number& number, const Mark&) { sum += number.value; });
     CHECK(sum == 103 + 1 + 105);
     CHECK(world.find<Number>(entities[3])->value == 103);
@@ -184,8 +167,8 @@ TEST_CASE("a query over a type that nothing has visits nothing", "[ecs][world]")
     world.set(world.create(), Number{1});
     int visits = 0;
 
-    world.each<Number, Unused>([&](Entity, Number&, Unused&) { ++visits; });
-    world.each<Unused>([&](Entity, Unused&) { ++visits; });
+    world.each<Number, Unused>([&](Entity, const Number&, const Unused&) { ++visits; });
+    world.write_each<Unused>([&](Entity, Unused&) { ++visits; });
 
     CHECK(visits == 0);
 }
@@ -202,75 +185,203 @@ TEST_CASE("two worlds share nothing", "[ecs][world]") {
     CHECK(two.is_alive(in_two));
 }
 
-TEST_CASE("a world does what a plain map of entities would do", "[ecs][world]") {
+namespace {
+
+// A world, and what it should hold.
+struct Checked {
     struct Modelled {
         std::optional<int> number;
         std::optional<std::string> name;
     };
+    using Model = std::map<Entity, Modelled>;
+
     World world;
-    std::map<Entity, Modelled> model;
-    std::vector<Entity> ever;  // dead ones too
-    std::mt19937 random(GENERATE(1, 2, 3));
+    Model model, before;
+    int resource = 0, resource_before = 0;
+};
 
-    for (int step = 0; step < 4000; ++step) {
-        const bool create = ever.empty() || random() % 5 == 0;
-        if (create) {
-            const Entity entity = world.create();
-            REQUIRE(model.try_emplace(entity).second);
-            ever.push_back(entity);
-            continue;
-        }
-        // Mostly late ones, so that living and dead handles are both met often.
-        const std::size_t back = std::min<std::size_t>(random() % 40, ever.size() - 1);
-        const Entity entity = ever[ever.size() - 1 - back];
-        const auto living = model.find(entity);
-        switch (random() % 5) {
-            case 0:
-                world.destroy(entity);
-                if (living != model.end()) model.erase(living);
-                break;
-            case 1:
-                world.remove<Number>(entity);
-                if (living != model.end()) living->second.number.reset();
-                break;
-            case 2:
-                world.remove<Name>(entity);
-                if (living != model.end()) living->second.name.reset();
-                break;
-            case 3:
-                if (living == model.end()) break;
-                living->second.number = step;
-                world.set(entity, Number{step});
-                break;
-            default:
-                if (living == model.end()) break;
-                living->second.name = std::to_string(step);
-                world.set(entity, Name{std::to_string(step)});
-                break;
-        }
-        if (step % 50 != 0) continue;
-
-        INFO("step " << step);
-        REQUIRE(world.entity_count() == model.size());
-        std::set<Entity> with_both;
-        for (const Entity any : ever) {
-            const auto found = model.find(any);
-            REQUIRE(world.is_alive(any) == (found != model.end()));
-            const Number* const number = world.find<Number>(any);
-            const Name* const name = world.find<Name>(any);
-            const Modelled expected = found == model.end() ? Modelled{} : found->second;
-            REQUIRE((number ? std::optional(number->value) : std::nullopt) == expected.number);
-            REQUIRE((name ? std::optional(name->text) : std::nullopt) == expected.name);
-            if (expected.number && expected.name) with_both.insert(any);
-        }
-        std::vector<Entity> visited;
-        world.each<Name, Number>([&](Entity visit, Name& name, Number& number) {
-            visited.push_back(visit);
-            REQUIRE(model.at(visit).name == name.text);
-            REQUIRE(model.at(visit).number == number.value);
-        });
-        REQUIRE(visited == std::vector(with_both.begin(), with_both.end()));
+void check(const Checked& c, const std::vector<Entity>& ever) {
+    REQUIRE(c.world.entity_count() == c.model.size());
+    REQUIRE(c.world.resource<Number>().value == c.resource);
+    std::set<Entity> with_both;
+    for (const Entity any : ever) {
+        const auto found = c.model.find(any);
+        REQUIRE(c.world.is_alive(any) == (found != c.model.end()));
+        const Number* const number = c.world.find<Number>(any);
+        const Name* const name = c.world.find<Name>(any);
+        const Checked::Modelled expected =
+            found == c.model.end() ? Checked::Modelled{} : found->second;
+        REQUIRE((number ? std::optional(number->value) : std::nullopt) == expected.number);
+        REQUIRE((name ? std::optional(name->text) : std::nullopt) == expected.name);
+        if (expected.number && expected.name) with_both.insert(any);
     }
-    CHECK(ever.size() > 500);
-    CHECK(model.size() < ever.size());
+    std::vector<Entity> visited;
+    c.world.each<Name, Number>([&](Entity visit, const Name& name, const Number& number) {
+        visited.push_back(visit);
+        REQUIRE(c.model.at(visit).name == name.text);
+        REQUIRE(c.model.at(visit).number == number.value);
+    });
+    REQUIRE(visited == std::vector(with_both.begin(), with_both.end()));
+}
+
+// Changes one entity of the world and of its model.
+void change(Checked& c, Entity entity, int step, std::mt19937& random) {
+    const auto living = c.model.find(entity);
+    const bool lives = living != c.model.end();
+    switch (random() % 7) {
+        case 0:
+            c.world.destroy(entity);
+            if (lives) c.model.erase(living);
+            break;
+        case 1:
+            c.world.remove<Number>(entity);
+            if (lives) living->second.number.reset();
+            break;
+        case 2:
+            c.world.remove<Name>(entity);
+            if (lives) living->second.name.reset();
+            break;
+        case 3:
+            if (!lives) break;
+            living->second.number = step;
+            c.world.set(entity, Number{step});
+            break;
+        case 4:
+            if (!lives) break;
+            living->second.name = std::to_string(step);
+            c.world.set(entity, Name{std::to_string(step)});
+            break;
+        case 5:
+            c.resource = step;
+            random() % 2 == 0 ? (void)c.world.set_resource(Number{step})
+                              : (void)(c.world.write<Number>().value = step);
+            break;
+        default:
+            if (Number* const number = c.world.write<Number>(entity)) number->value = -step;
+            if (lives && living->second.number) living->second.number = -step;
+    }
+}
+
+}  // namespace
+
+TEST_CASE("worlds, their copies and transactions do what plain maps of entities would do",
+          "[ecs][world]") {
+    std::vector<Checked> worlds(1);
+    worlds[0].world.set_resource(Number{0});
+    std::set<Entity> ever;  // dead ones too
+    std::mt19937 random(GENERATE(1, 2, 3, 4));
+    std::vector<bool> is_open(8, false);
+
+    for (int step = 0; step < 8000; ++step) {
+        Checked& c = worlds[random() % worlds.size()];
+        const auto index = static_cast<std::size_t>(&c - worlds.data());
+        const auto what = random() % 40;
+        if (what < 8 || ever.empty()) {
+            const Entity entity = c.world.create();
+            REQUIRE(c.model.try_emplace(entity).second);
+            ever.insert(entity);
+        } else if (what == 8) {
+            Checked copy = c;  // in no transaction
+            if (worlds.size() < is_open.size()) {
+                worlds.push_back(std::move(copy));
+            } else if (const std::size_t other = random() % worlds.size(); !is_open[other]) {
+                worlds[other] = std::move(copy);
+            }
+        } else if (what == 9 && !is_open[index]) {
+            c.world.begin();
+            c.before = c.model;
+            c.resource_before = c.resource;
+            is_open[index] = true;
+        } else if (what == 10 && is_open[index]) {
+            c.world.commit();
+            is_open[index] = false;
+        } else if (what == 11 && is_open[index]) {
+            c.world.roll_back();
+            c.model = c.before;
+            c.resource = c.resource_before;
+            is_open[index] = false;
+        } else if (what > 11) {
+            // Mostly late ones, so that living and dead handles are both met often.
+            const auto back = std::min<std::size_t>(1 + random() % 40, ever.size());
+            change(c, *std::prev(ever.end(), static_cast<std::ptrdiff_t>(back)), step, random);
+        }
+        if (step % 100 != 0) continue;
+        INFO("step " << step);
+        const std::vector<Entity> all(ever.begin(), ever.end());
+        for (const Checked& one : worlds) check(one, all);
+    }
+    CHECK(ever.size() > 100);
+}
+
+namespace {
+
+struct Cached {
+    int value = 0;
+    std::shared_ptr<int> cache;
+
+    Cached without_caches() const { return {value, {}}; }
+};
+
+}  // namespace
+
+TEST_CASE("a transaction that is rolled back keeps no caches, and the present keeps its own",
+          "[ecs][world]") {
+    World world;
+    world.set_resource(Cached{1, std::make_shared<int>(5)});
+    const Cached* const at = &world.resource<Cached>();
+
+    world.begin();
+    world.write<Cached>().value = 2;
+    CHECK(&world.resource<Cached>() == at);
+    CHECK(world.resource<Cached>().cache);
+    world.roll_back();
+
+    CHECK(world.resource<Cached>().value == 1);
+    CHECK_FALSE(world.resource<Cached>().cache);
+    world.set_resource(Cached{3, std::make_shared<int>(5)});
+    world.begin();
+    world.roll_back();
+    CHECK(world.resource<Cached>().cache);  // nobody wrote it
+}
+
+TEST_CASE("a copy that a transaction shares components with keeps their caches", "[ecs][world]") {
+    World world;
+    world.set_resource(Cached{1, std::make_shared<int>(5)});
+    const World copy = world;
+
+    world.begin();
+    world.write<Cached>().value = 2;
+    CHECK(world.resource<Cached>().cache);
+    world.roll_back();
+
+    CHECK(world.resource<Cached>().value == 1);
+    CHECK(copy.resource<Cached>().value == 1);
+    CHECK(copy.resource<Cached>().cache);
+}
+
+TEST_CASE("reading shares, writing copies the components of one type", "[ecs][world]") {
+    World world;
+    const Entity entity = world.create();
+    world.set(entity, Name{"a"});
+    world.set(entity, Number{1});
+    World copy = world;
+
+    CHECK(copy.find<Name>(entity) == world.find<Name>(entity));
+    copy.write<Name>(entity)->text = "b";
+
+    CHECK(copy.find<Name>(entity) != world.find<Name>(entity));
+    CHECK(copy.find<Number>(entity) == world.find<Number>(entity));
+}
+
+TEST_CASE("memory of worlds counts once what they share", "[ecs][world]") {
+    World world;
+    world.set(world.create(), Number{1});
+    World copy = world;
+    const World* const both[] = {&world, &copy};
+    const std::size_t one = World::count_bytes(std::span(both).first(1));
+
+    CHECK(one == sizeof(Number) + sizeof(Entity));
+    CHECK(World::count_bytes(both) == one);
+    copy.write_each<Number>([](Entity, Number& number) { number.value = 2; });
+    CHECK(World::count_bytes(both) == 2 * one);
 }

@@ -110,7 +110,7 @@ TEST_CASE("heavy atoms of two residues clash below their radii less 0.4 Å", "[m
     CHECK(count_of({true, true, true}) == 0);
 
     AtomTable metal = table_of({{"LIG", "1", "O1", 0}, {"ZN", "2", "ZN", 2}});
-    metal.element[1] = "ZN";
+    metal.element.write()[1] = "ZN";
     CHECK(clashes(metal).empty());
 }
 

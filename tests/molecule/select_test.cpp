@@ -79,8 +79,8 @@ TEST_CASE("each word selects its atoms", "[molecule][selection]") {
 
 TEST_CASE("names and numbers select as files spell them", "[molecule][selection]") {
     AtomTable atoms = test::one_of_each();
-    atoms.charge[4] = 0.4;
-    atoms.charge[5] = -0.5;
+    atoms.charge.write()[4] = 0.4;
+    atoms.charge.write()[5] = -0.5;
     const auto [text, expected] = GENERATE(table<std::string, Numbers>({
         {"chain B", from_to(21, 33)},
         {"chain A", joined({from_to(0, 20), {38, 39, 42, 43}})},

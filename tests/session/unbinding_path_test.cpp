@@ -28,8 +28,8 @@ TEST_CASE("of a hand on a spring the path is that of its residue", "[session][un
     const auto move_held_atoms = [&](double by) {
         for (std::size_t i = 0; i < atoms.size(); ++i) {
             if (!is_held(i)) continue;
-            world.resource<AtomTable>().positions[i].x() += by;
-            world.resource<TorsionState>().positions[i].x() += by;
+            world.write<AtomTable>().positions[i].x() += by;
+            world.write<TorsionState>().positions[i].x() += by;
         }
     };
     const auto find_clearance = [&] {
@@ -86,7 +86,7 @@ TEST_CASE("of a hand on a spring the path is that of its residue", "[session][un
         if (atoms.names[i].segment == "TL3C" || is_held(i) || !is_backbone(i)) continue;
         ++others;
         if (atoms.names[i].segment == "B" && atoms.names[i].number == "48") {
-            world.resource<AtomTable>().positions[i].z() += 2;
+            world.write<AtomTable>().positions[i].z() += 2;
         }
     }
     log.add(world, 1.0);

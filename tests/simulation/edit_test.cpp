@@ -655,7 +655,7 @@ TEST_CASE(
     "[simulation][edit]") {
     World world = load_world(read_scene(test::in_project("scenes/water/space.toml")));
     const bool is_adaptive = GENERATE(false, true);
-    world.resource<MechanicsSettings>().statics.method =
+    world.write<MechanicsSettings>().statics.method =
         is_adaptive ? RelaxMethod::QuasiStatic : RelaxMethod::SecondOrder;
     const Entity hand = first_hand(world);
     set_mobility(world, {"fixed", Motion::Free, {}});
@@ -674,8 +674,8 @@ TEST_CASE(
 
     REQUIRE(step_world(world, pose, local_contact_of(world).model).finite);
 
-    const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
     const auto is_turned = [&] {
+        const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
         for (std::uint32_t i = 0; i < held.count; ++i) {
             const Vec3 expected = before[held.first] + Vec3(0.2, -0.1, 0.3) +
                                   turn * (before[held.first + i] - before[held.first]);

@@ -463,10 +463,10 @@ TEST_CASE("residues of two molecules with the same names are not one, where few 
     // The other one's residues go on where the first's end, in a segment of the same name.
     const auto count_joints = [](double within, bool has_same_names) {
         World world = load_peptides({"statics.relax_steps=0"});
-        JointsDescription& joints = world.resource<MechanicsSettings>().joints;
+        JointsDescription& joints = world.write<MechanicsSettings>().joints;
         joints.within_angstrom = within;
         joints.around = "held";
-        BondedTerms& terms = world.resource<BondedTerms>();
+        BondedTerms& terms = world.write<BondedTerms>();
         Connectivity connectivity = *terms.connectivity;
         if (has_same_names) {
             const AtomRange other = held_range(world, first_hand(world));
@@ -524,16 +524,15 @@ TEST_CASE("a step that is not finite leaves everything as it was", "[simulation]
     World world = load_peptides(settings);
     const ContactModel felt =
         test::step_once(world, hand_at({-0.1, 0, 0}), local_contact_of(world).model);
-    TorsionState& state = world.resource<TorsionState>();
-    const TorsionState before = state;
+    const TorsionState before = world.resource<TorsionState>();
     const std::vector<Vec3> positions = world.resource<AtomTable>().positions;
     const Vec3 place = place_of(world);
 
-    Spring& spring = *world.find<Spring>(first_hand(world));
-    spring.k = std::numeric_limits<double>::quiet_NaN();
+    world.write<Spring>(first_hand(world))->k = std::numeric_limits<double>::quiet_NaN();
     CHECK_FALSE(step_world(world, hand_at({-0.2, 0, 0}), felt).finite);
-    spring.k = before.springs.front().k;
+    world.write<Spring>(first_hand(world))->k = before.springs.front().k;
 
+    const TorsionState state = world.resource<TorsionState>();
     CHECK(state.angles == before.angles);
     CHECK(state.shifts == before.shifts);
     CHECK(state.springs.front().place == before.springs.front().place);
@@ -542,7 +541,7 @@ TEST_CASE("a step that is not finite leaves everything as it was", "[simulation]
     CHECK((place_of(world) - place).norm() < 1e-12);
     CHECK(local_contact_of(world).model.force_newton == felt.force_newton);
     CHECK(step_world(world, hand_at({-0.3, 0, 0}), felt).finite);
-    CHECK(std::isfinite(state.energy()));
+    CHECK(std::isfinite(world.resource<TorsionState>().energy()));
 }
 
 TEST_CASE("a hand that is farther away than any molecule moves nothing", "[simulation][flexible]") {

@@ -61,7 +61,7 @@ struct Shipped {
         for (const std::string_view line : split_lines(text)) {
             const std::vector<std::string_view> words = split_words(line);
             if (words.size() != 10 || words[7] != "TL3C") continue;
-            const double m = world.resource<AtomTable>().mass.at(held.first + places.size());
+            const double m = world.resource<AtomTable>().mass.read().at(held.first + places.size());
             places.emplace_back(*find_real(words[4]), *find_real(words[5]), *find_real(words[6]));
             centre += m * places.back();
             mass += m;

@@ -47,7 +47,7 @@ TEST_CASE("the water scene becomes two molecules and a hand", "[simulation][load
     World world = load_world(test::water_scene());
     int molecules = 0, hands = 0;
 
-    world.each<Molecule>([&](Entity, Molecule& molecule) {
+    world.write_each<Molecule>([&](Entity, Molecule& molecule) {
         CHECK(molecule.atoms.count == 3);
         CHECK(world.resource<AtomTable>().names[molecule.reference_atom].atom == "OH2");
         ++molecules;

@@ -34,7 +34,7 @@ constexpr double dimer_distance = 2.6, dimer_step = 0.002;  // Å; the force is 
 World dimer() {
     World world = load_world(test::water_scene({"mode=guarded"}));
     move_grabbed(world, dimer_distance);
-    local_contact_of(world) = build_local_contact(world, first_hand(world), {});
+    write_local_contact(world) = build_local_contact(world, first_hand(world), {});
     return world;
 }
 
@@ -42,7 +42,7 @@ World dimer() {
 void step_in(World& world, double followed) {
     const Vec3 place = grabbed_place(world);
     for (const std::uint32_t i : test::atoms_around(world))
-        world.resource<AtomTable>().positions[i].x() -= followed * dimer_step;
+        world.write<AtomTable>().positions[i].x() -= followed * dimer_step;
     move_grabbed(world, grabbed_distance(world) - dimer_step);
     REQUIRE((grabbed_place(world) - place).norm() == Approx(dimer_step));
     update_contact(world, first_hand(world), {});
@@ -85,8 +85,8 @@ TEST_CASE("what was foretold less than 2 pN of confirms and denies nothing",
     World world = load_world(test::water_scene({"mode=guarded"}));
     const double far = GENERATE(4.0, 12.0);
     move_grabbed(world, far);
-    local_contact_of(world) = build_local_contact(world, first_hand(world), {});
-    local_contact_of(world).model.prediction_gain = 0.6;
+    write_local_contact(world) = build_local_contact(world, first_hand(world), {});
+    write_local_contact(world).model.prediction_gain = 0.6;
     const bool is_foretold = std::abs(newton_at(world, far - 0.2) - newton_at(world, far)) > 2e-12;
     REQUIRE(is_foretold == (far == 4));
 
@@ -99,9 +99,9 @@ TEST_CASE("what was foretold less than 2 pN of confirms and denies nothing",
 
 TEST_CASE("a contact without atoms keeps the prediction gain", "[simulation][contact]") {
     World world = dimer();
-    local_contact_of(world).model.prediction_gain = 0.6;
-    local_contact_of(world).model.torque_prediction_gain = 0.7;
-    local_contact_of(world).field.has_atoms = false;
+    write_local_contact(world).model.prediction_gain = 0.6;
+    write_local_contact(world).model.torque_prediction_gain = 0.7;
+    write_local_contact(world).field.has_atoms = false;
 
     step_in(world, 1);
 
@@ -119,11 +119,11 @@ TEST_CASE("torques are confirmed by themselves", "[simulation][contact]") {
     };
 
     for (const std::uint32_t i : test::atoms_around(world)) {
-        Vec3& place = world.resource<AtomTable>().positions[i];
+        Vec3& place = world.write<AtomTable>().positions[i];
         place = pivot + about(followed * turn) * (place - pivot);
     }
     for (const std::uint32_t i : held_atoms(world, first_hand(world))) {
-        Vec3& place = world.resource<AtomTable>().positions[i];
+        Vec3& place = world.write<AtomTable>().positions[i];
         place = pivot + about(turn) * (place - pivot);
     }
     update_contact(world, first_hand(world), {});

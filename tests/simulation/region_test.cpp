@@ -345,7 +345,7 @@ TEST_CASE("a region is made anew before atoms come to others that it does not ha
 TEST_CASE("where no other region can be had the old one goes on", "[simulation][region][errors]") {
     World world = load_flap({"grab.molecule=inhibitor", "grab.atom=\"200\"", "statics.pairs=fast"});
     const std::vector<std::uint32_t> first = model_atoms_of(world).in_table;
-    world.resource<MechanicsSettings>().joints.turn = {"B 999 CB CG"};
+    world.write<MechanicsSettings>().joints.turn = {"B 999 CB CG"};
     for (int i = 0; i < 40; ++i) pull(world, Vec3(0.25, 0, 0));
     CHECK(model_atoms_of(world).in_table == first);
     REQUIRE(world.find_resource<SecondOrder>() != nullptr);

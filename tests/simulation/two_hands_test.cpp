@@ -74,7 +74,7 @@ World one_hand(const World& two, SceneDescription scene, std::size_t slot) {
     const AtomRange from = range_of(two), to = range_of(world);
     REQUIRE(from.count == to.count);
     std::copy_n(two.resource<AtomTable>().positions.begin() + from.first, from.count,
-                world.resource<AtomTable>().positions.begin() + to.first);
+                world.write<AtomTable>().positions.begin() + to.first);
     return world;
 }
 
@@ -105,7 +105,7 @@ TEST_CASE("two hands feel what one feels with the molecules where they have them
         // Relaxed beside another neighbour, it would be turned elsewhere.
         const AtomRange own = held_range(two, hands_of(two)[slot]);
         const AtomRange same = held_range(one, first_hand(one));
-        RigidShape& shape = *one.find<RigidShape>(grip_of(one, first_hand(one)).molecule);
+        RigidShape& shape = *one.write<RigidShape>(grip_of(one, first_hand(one)).molecule);
         const Vec3 reference = two.resource<AtomTable>().positions[own.first];
         for (std::size_t i = 0; i < same.count; ++i)
             shape.atoms[i] = two.resource<AtomTable>().positions[own.first + i] - reference;
@@ -307,7 +307,7 @@ TEST_CASE(
         poses[0].place_angstrom += Vec3(-0.1, 0.02, 0.04);
         poses[1].place_angstrom += Vec3(0.04, 0.1, -0.06);
         step_to(two, poses);
-        one.each<Spring>([&, place = spring_of(two, second)->place](Entity, Spring& spring) {
+        one.write_each<Spring>([&, place = spring_of(two, second)->place](Entity, Spring& spring) {
             spring.place = place;
         });
         HandPose hand;

@@ -202,7 +202,7 @@ private:
                 std::clamp(-(spring_ * moved_ + field.force.x()) / slope, -0.05, 0.05);
             moved_ += by;
             for (const std::uint32_t i : atoms_around(world_))
-                world_.resource<AtomTable>().positions[i].x() += by;
+                world_.write<AtomTable>().positions[i].x() += by;
             if (std::abs(by) < 1e-9) return;
         }
     }

@@ -59,7 +59,7 @@ inline World three_waters(std::size_t held, const Vec3& beside,
     World world = load_world(with_held_at(held, std::move(scene)));
     const AtomRange atoms = range_called(world, "third");
     for (std::uint32_t i = 0; i < atoms.count; ++i)
-        world.resource<AtomTable>().positions[atoms.first + i] += beside;
+        world.write<AtomTable>().positions[atoms.first + i] += beside;
     return world;
 }
 

@@ -59,6 +59,11 @@ public:
         return *this;
     }
 
+    template <class Value>
+    Bytes& operator<<(const SharedVector<Value>& values) {
+        return *this << values.read();
+    }
+
     const std::string& text() const { return text_; }
 
 private:

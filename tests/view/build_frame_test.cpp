@@ -101,9 +101,9 @@ TEST_CASE("every atom that nothing hides is seen at its centre, and all fit the 
 
 TEST_CASE("chains have carbons of their own colours, the grabbed molecule's stand out", "[view]") {
     World world = test::three_waters(GENERATE(0, 1, 2), {0, 4, 0});
-    for (std::string& element : world.resource<AtomTable>().element) element = "C";
+    for (std::string& element : world.write<AtomTable>().element.write()) element = "C";
     const AtomRange third = test::range_called(world, "third");
-    world.resource<AtomTable>().names[third.first + 2].segment = "OTHER";
+    world.write<AtomTable>().names.write()[third.first + 2].segment = "OTHER";
 
     // Three of what is held, three of the fixed water, three of the third.
     const auto colours = [&](Colouring colouring) {
@@ -160,7 +160,7 @@ TEST_CASE("of a molecule of which a spring holds a residue, that residue stands 
 TEST_CASE("each molecule is drawn as its appearance says, and all others as the settings do",
           "[view]") {
     World world = load_world(test::water_scene());
-    for (std::string& element : world.resource<AtomTable>().element) element = "C";
+    for (std::string& element : world.write<AtomTable>().element.write()) element = "C";
     move_grabbed(world, 2.8);
     ViewSettings settings = shown_as(Representation::BallAndStick);
     settings.hydrogen_bonds = ShownBonds::InHand;
@@ -228,7 +228,7 @@ TEST_CASE("a snap is marked at its atom for a second and a half", "[view][signs]
     const ViewSettings settings = shown_as(Representation::BallAndStick);
     std::vector<ViewLabel> labels;
     const auto marks_after = [&](double s) {
-        Clock& clock = world.resource<Clock>();
+        Clock& clock = world.write<Clock>();
         clock.steps = 100 + static_cast<std::uint64_t>(s / clock.period_s);
         std::vector<glm::vec3> places;
         for (const ConeShape& cone : build_frame(world, {}, settings, &labels).cones) {

@@ -272,7 +272,7 @@ TEST_CASE("a residue has a class where its backbone is complete, by CHARMM's nam
     // Of six residues all are needed for the one helix.
     Drawing drawing = of_chain(test::build_chain(6, -57, -47));
     const auto [name, count] = GENERATE(table<std::string, int>({{"O", 4}, {"OT1", 4}, {"X", 0}}));
-    drawing.atoms.names.back().atom = name;
+    drawing.atoms.names.write().back().atom = name;
     ResidueStructure structure;
 
     CHECK(std::ranges::count(structure.update(drawing.atoms, drawing.residues), AlphaHelix) ==
@@ -379,7 +379,7 @@ TEST_CASE("a ribbon is open where residues are missing, and between chains", "[v
         CHECK(drawing.parts.shown == std::vector<bool>{1, 1, 1, 1, 1, 1, 1, 1, 0});
     }
     SECTION("another chain") {
-        for (std::size_t i = 8; i < drawing.atoms.size(); ++i) drawing.atoms.names[i].segment = "B";
+        for (std::size_t i = 8; i < drawing.atoms.size(); ++i) drawing.atoms.names.write()[i].segment = "B";
         drawing.draw();
         CHECK(count_bodies(drawing.mesh()) == 2);
     }
@@ -525,14 +525,14 @@ TEST_CASE("a nucleotide alone is not drawn, nor is a base without its atoms", "[
         CHECK(drawing.frame.meshes.empty());
     }
     SECTION("the bond to the next is broken") {
-        for (AtomName& name : drawing.atoms.names)
+        for (AtomName& name : drawing.atoms.names.write())
             if (name.atom == "O3'") name.atom = "X";
         drawing.draw();
         CHECK(drawing.frame.meshes.empty());
     }
     SECTION("no C2 in the first") {
         for (std::size_t i = drawing.residues[0].first; i < drawing.residues[0].end; ++i)
-            if (drawing.atoms.names[i].atom == "C2") drawing.atoms.names[i].atom = "X";
+            if (drawing.atoms.names[i].atom == "C2") drawing.atoms.names.write()[i].atom = "X";
         drawing.draw();
         CHECK(drawing.parts.base_plates < rings);
         check_sound(drawing);

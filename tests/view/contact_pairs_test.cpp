@@ -38,7 +38,7 @@ struct Pair {
     std::uint32_t fixed = test::range_called(world, "fixed").first;
 
     Pair() {
-        AtomTable& atoms = world.resource<AtomTable>();
+        AtomTable& atoms = world.write<AtomTable>();
         for (const std::uint32_t first : {moved, fixed}) {
             const double x = first == moved ? 0 : 60;
             atoms.positions[first + 1] = {x, 0, 30};
@@ -46,16 +46,16 @@ struct Pair {
         }
     }
     void put(double distance, const std::string& of_moved, const std::string& of_fixed) {
-        AtomTable& atoms = world.resource<AtomTable>();
+        AtomTable& atoms = world.write<AtomTable>();
         atoms.positions[moved] = Vec3::Zero();
         atoms.positions[fixed] = {distance, 0, 0};
-        atoms.element[moved] = of_moved;
-        atoms.element[fixed] = of_fixed;
+        atoms.element.write()[moved] = of_moved;
+        atoms.element.write()[fixed] = of_fixed;
     }
     void name(std::uint32_t first, const char* residue, const char* atom) {
-        AtomTable& atoms = world.resource<AtomTable>();
-        for (std::uint32_t i = first; i < first + 3; ++i) atoms.names[i].residue = residue;
-        atoms.names[first].atom = atom;
+        AtomTable& atoms = world.write<AtomTable>();
+        for (std::uint32_t i = first; i < first + 3; ++i) atoms.names.write()[i].residue = residue;
+        atoms.names.write()[first].atom = atom;
     }
     std::array<std::size_t, 3> count(ShownBonds which = ShownBonds::InHand) {
         const ContactPairs found = find_pairs(world, which);
@@ -90,9 +90,9 @@ TEST_CASE("in hand are pairs of what is held with the rest, and all has the othe
           "[view][contacts]") {
     Pair pair;
     pair.put(30, "C", "C");
-    AtomTable& atoms = pair.world.resource<AtomTable>();
+    AtomTable& atoms = pair.world.write<AtomTable>();
     const std::uint32_t third = test::range_called(pair.world, "third").first;
-    atoms.element[third] = "C";
+    atoms.element.write()[third] = "C";
     atoms.positions[third] = atoms.positions[pair.fixed] + Vec3(0, 3.5, 0);
     CHECK(pair.count() == Counts{0, 0, 0});
     CHECK(pair.count(ShownBonds::All) == Counts{1, 0, 0});
@@ -105,14 +105,14 @@ TEST_CASE("a hydrogen bond is no contact, and a clash where it is 0.4 Å shorter
     Pair pair;
     const auto at = [&](double distance) {
         pair.put(distance, "O", "O");  // 1.52 Å each
-        pair.world.resource<AtomTable>().positions[pair.moved + 1] = {0.96, 0, 0};
+        pair.world.write<AtomTable>().positions[pair.moved + 1] = {0.96, 0, 0};
         return pair.count();
     };
 
     CHECK(at(2.7) == Counts{0, 0, 0});  // 0.34 Å of overlap
     CHECK(at(2.5) == Counts{0, 0, 0});  // 0.54
     CHECK(at(2.2) == Counts{0, 1, 0});  // 0.84
-    pair.world.resource<AtomTable>().positions[pair.moved + 1] = {0, 0, 30};
+    pair.world.write<AtomTable>().positions[pair.moved + 1] = {0, 0, 30};
     CHECK(pair.count() == Counts{0, 1, 0});
     pair.put(2.7, "O", "O");
     CHECK(pair.count() == Counts{1, 0, 0});
@@ -124,10 +124,10 @@ TEST_CASE("the worst clash is that of the largest overlap beyond what its pair i
           "[view][contacts]") {
     Pair pair;
     pair.put(2.2, "O", "O");  // 0.84 Å of overlap; 0.44 with the allowance of a hydrogen bond
-    AtomTable& atoms = pair.world.resource<AtomTable>();
+    AtomTable& atoms = pair.world.write<AtomTable>();
     atoms.positions[pair.moved + 1] = {0.96, 0, 0};
     const std::uint32_t third = test::range_called(pair.world, "third").first;
-    atoms.element[third] = "C";
+    atoms.element.write()[third] = "C";
     atoms.positions[third] = {0, 2.6, 0};  // 1.52 + 1.70 - 2.6 = 0.62 Å
 
     const ContactPairs found = find_pairs(pair.world, ShownBonds::InHand);

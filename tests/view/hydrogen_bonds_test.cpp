@@ -37,7 +37,7 @@ void put_bond(World& world, double length, double angle_deg) {
     const Vec3 acceptor(0, 0, 0), hydrogen(length, 0, 0);
     const Vec3 donor = hydrogen + 0.96 * Vec3(-std::cos(angle), std::sin(angle), 0);
     const Vec3 far(0, 0, 50);
-    std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+    std::vector<Vec3>& positions = world.write<AtomTable>().positions;
     std::ranges::copy(std::array{donor, hydrogen, Vec3(donor + far)},
                       positions.begin() + first_moved(world));
     std::ranges::copy(std::array{acceptor, Vec3(-far), Vec3(-2 * far)},
@@ -82,8 +82,8 @@ TEST_CASE("what gives and what accepts", "[view][hydrogen-bonds]") {
     put_bond(world, 2, 170);
     const std::uint32_t moved = first_moved(world), fixed = first_fixed(world);
     const auto count_with = [&](const std::string& donor, const std::string& acceptor) {
-        world.resource<AtomTable>().element[moved] = donor;
-        world.resource<AtomTable>().element[fixed] = acceptor;
+        world.write<AtomTable>().element.write()[moved] = donor;
+        world.write<AtomTable>().element.write()[fixed] = acceptor;
         return find_hydrogen_bonds(world).size();
     };
 
@@ -95,9 +95,9 @@ TEST_CASE("what gives and what accepts", "[view][hydrogen-bonds]") {
     CHECK(count_with("O", "C") == 0);
 
     // A nitrogen with four bonds has nothing to accept with.
-    world.resource<AtomTable>().bonds.push_back({fixed, moved + 2});
+    world.write<AtomTable>().bonds.push_back({fixed, moved + 2});
     CHECK(count_with("O", "N") == 1);
-    world.resource<AtomTable>().bonds.push_back({fixed, moved});
+    world.write<AtomTable>().bonds.push_back({fixed, moved});
     CHECK(count_with("O", "N") == 0);
     CHECK(count_with("O", "O") == 1);
 }

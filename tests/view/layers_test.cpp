@@ -89,7 +89,7 @@ TEST_CASE("a cartoon shows the atoms of a modified residue", "[view][layers]") {
         select_in_world(world, parse_selection("protein and resid 45 and index 0:1500"));
     for (std::size_t i = 0; i < lysine.size(); ++i) {
         if (!lysine[i]) continue;
-        world.resource<AtomTable>().names[i].residue = "LYR";
+        world.write<AtomTable>().names.write()[i].residue = "LYR";
         ++renamed;
     }
     REQUIRE(renamed == 22);
@@ -124,7 +124,7 @@ TEST_CASE("residues that are missing leave a dashed gap", "[view][layers]") {
     World world = test::protease_world();
     const std::size_t before = build_frame(world, plain(Representation::Cartoon)).cones.size();
     // One chain's second half 5 Å aside: its ribbon is cut between residues 50 and 51.
-    AtomTable& atoms = world.resource<AtomTable>();
+    AtomTable& atoms = world.write<AtomTable>();
     for (std::size_t i = 0; i < atoms.size(); ++i) {
         const auto number = find_integer(atoms.names[i].number);
         if (atoms.names[i].segment == "A" && number && *number > 50)
@@ -168,7 +168,7 @@ TEST_CASE("frames of one builder are as those built alone", "[view][layers]") {
     settings.layers.push_back({.representation = Representation::Surface, .of = "resid 20:40"});
     FrameBuilder builder;
     (void)builder.build(world, {}, settings);
-    for (Vec3& place : world.resource<AtomTable>().positions) place += Vec3(0.3, 0, 0);
+    for (Vec3& place : world.write<AtomTable>().positions) place += Vec3(0.3, 0, 0);
     FrameScene kept = builder.build(world, {}, settings);
     for (int i = 0; i < 200; ++i) kept = builder.build(world, {}, settings);  // all its budget
     const FrameScene alone = build_frame(world, {}, settings);
@@ -196,7 +196,7 @@ TEST_CASE("what selections mean is kept until atoms move or others are there", "
     CHECK(is_as_alone());
     CHECK(is_as_alone());
     // From the third to the first: what is near to the third changes.
-    AtomTable& atoms = world.resource<AtomTable>();
+    AtomTable& atoms = world.write<AtomTable>();
     const AtomRange third = test::range_called(world, "third");
     for (std::uint32_t i = third.first; i < third.first + third.count; ++i)
         atoms.positions[i] += Vec3(0, -36, 0);
@@ -236,7 +236,7 @@ TEST_CASE("a selection that is none is refused with its column", "[view][layers]
 
 TEST_CASE("colours stand for numbers of the world", "[view][colours]") {
     World world = test::protease_world();
-    AtomTable& atoms = world.resource<AtomTable>();
+    AtomTable& atoms = world.write<AtomTable>();
     const std::vector<ResidueSpan> residues = find_residues(world);
     ResidueStructure found;
     const auto structure = found.update(atoms, residues);
@@ -256,7 +256,7 @@ TEST_CASE("colours stand for numbers of the world", "[view][colours]") {
         CHECK(colours(Colouring::Structure)[residue.alpha] ==
               find_legend(world, Colouring::Structure)[0].colour);
     }
-    for (std::size_t i = 0; i < atoms.size(); ++i) atoms.b_factor[i] = i == 7 ? 80 : 10;
+    for (std::size_t i = 0; i < atoms.size(); ++i) atoms.b_factor.write()[i] = i == 7 ? 80 : 10;
     CHECK(colours(Colouring::BFactor)[7] == sequential_colour(1));
     CHECK(colours(Colouring::BFactor)[8] == sequential_colour(0));
     CHECK_THAT(find_legend(world, Colouring::BFactor).back().text, Contains("80"));

@@ -35,7 +35,7 @@ std::vector<ConeShape> cones_of(const FrameScene& frame, std::uint32_t pick) {
     return cones;
 }
 
-void wait(World& world, std::uint64_t steps) { world.resource<Clock>().steps += steps; }
+void wait(World& world, std::uint64_t steps) { world.write<Clock>().steps += steps; }
 
 }  // namespace
 
@@ -72,7 +72,7 @@ TEST_CASE("the ghost stands where what is in the hand was at the start", "[view]
     CHECK(cones_of(builder.build(world, {}, without), ghost_pick).empty());
 
     // A reset is a new start.
-    world.resource<Clock>().steps = 0;
+    world.write<Clock>().steps = 0;
     move_grabbed(world, 4);
     CHECK(cones_of(builder.build(world, {}, settings), ghost_pick).empty());
 }
@@ -89,7 +89,7 @@ TEST_CASE("a reset by an edit is a new start, though steps are counted on", "[vi
 
     // As where the file's place is another by now: what stood before is no ghost of this start.
     World again = world;
-    ++again.resource<Clock>().resets;
+    ++again.write<Clock>().resets;
     CHECK(cones_of(builder.build(again, {}, settings), ghost_pick).empty());
 
     const std::uint64_t resets = world.resource<Clock>().resets;
@@ -118,7 +118,7 @@ TEST_CASE("the ghost and what is old of the trail have the colour of the backgro
 TEST_CASE("the ghost has residues around that moved by 0.5 Å, and no hydrogens on carbon",
           "[view][past]") {
     World world = test::protease_world();
-    AtomTable& atoms = world.resource<AtomTable>();
+    AtomTable& atoms = world.write<AtomTable>();
     const std::vector<ResidueSpan> residues = find_residues(world);
     const std::vector<bool> pocket = find_pocket(world, residues);
     const auto residue = std::ranges::find_if(residues, [&](const ResidueSpan& one) {
@@ -188,7 +188,7 @@ TEST_CASE("the trail is the way of the centre, fades, and is no longer than its 
         CHECK(cones_of(builder.build(world, {}, settings), trail_pick).empty());
     }
     SECTION("a reset clears it") {
-        world.resource<Clock>().steps = 0;
+        world.write<Clock>().steps = 0;
         move_grabbed(world, 6);
         CHECK(cones_of(builder.build(world, {}, settings), trail_pick).empty());
         wait(world, steps(0.1));

@@ -80,9 +80,9 @@ TEST_CASE("residues are of every molecule, and waters have no CA", "[view][pocke
 TEST_CASE("a residue ends where its molecule does, wherever the one in hand stands",
           "[view][pocket]") {
     World world = test::three_waters(GENERATE(0, 1, 2), {0, 20, 0});
-    AtomTable& atoms = world.resource<AtomTable>();
+    AtomTable& atoms = world.write<AtomTable>();
     // All of one name, and with a CA: so what is far away does not stand.
-    for (AtomName& name : atoms.names) {
+    for (AtomName& name : atoms.names.write()) {
         name.segment = "A";
         if (name.atom == "H1") name.atom = "CA";
     }

@@ -38,7 +38,7 @@ struct FromFiles {
 
 FromFiles compare_with_files(const SceneDescription& scene, const World& world) {
     World start = world;
-    std::vector<Vec3>& positions = start.resource<AtomTable>().positions;
+    std::vector<Vec3>& positions = start.write<AtomTable>().positions;
     positions = load_system(scene).positions;
     const PoseComparison comparison(start);
     return {comparison.between(reference_positions(world), positions),

@@ -256,7 +256,7 @@ void await_first_frame(const SceneDescription& scene, World& world, const RunOpt
     tell(progress.stages(), "waiting for the engine's first frame");
     begin_with_engine(world);
     if (options.headless) {
-        world.resource<RemoteEngine>().is_awaited = true;
+        world.write<RemoteEngine>().is_awaited = true;
     } else {
         leave_engine(world);
     }

@@ -91,7 +91,7 @@ void choose_active(World& world, const StepInput& /*input*/) {
 }
 
 void prepare_choice(World& world) {
-    AdaptiveState& adaptive = world.resource<AdaptiveState>();
+    AdaptiveState& adaptive = world.write<AdaptiveState>();
     const std::size_t together = world.resource<Solver>().settings.steps;
     if (adaptive.weighs_hand_proximity) update_factors(world, adaptive);
     auto most = static_cast<std::size_t>(model_of(world).coordinates);

@@ -23,17 +23,17 @@ constexpr double farthest_place = 1e5;  // Å
 
 // Without a stretch of its spring; the servo puts the hand's end there.
 void hold_anew(World& world, Entity hand, EngineHold& hold) {
-    Grip& grip = *world.find<Grip>(hand);
+    Grip& grip = *world.write<Grip>(hand);
     hold.smoothed = hold.middle;
     hold.is_live = true;
     grip.pose.place_angstrom = hold.middle - grip.anchor;
-    world.find<Spring>(hand)->place = hold.middle;
+    world.write<Spring>(hand)->place = hold.middle;
     gather_springs(world, {});
-    ++world.find<Contact>(hand)->answer.model.start;
+    ++world.write<Contact>(hand)->answer.model.start;
 }
 
 void follow_atoms(World& world, Entity hand, bool is_live) {
-    EngineHold& hold = *world.find<EngineHold>(hand);
+    EngineHold& hold = *world.write<EngineHold>(hand);
     const RemoteEngine& engine = world.resource<RemoteEngine>();
     const Vec3 middle = find_middle(world.resource<AtomTable>(), hold);
     const bool has_jumped = (middle - hold.middle).norm() > farthest_move;
@@ -64,7 +64,7 @@ std::vector<AtomForce> list_forces(const World& world) {
         if (!hold.is_live) return;
         const Vec3 force = -engine.settings.force_scale * find_engine_spring(world, hand).force;
         for (std::size_t i = 0; i < hold.atoms.size(); ++i) {
-            const std::int32_t atom = engine.atoms.in_engine[hold.atoms[i]];
+            const std::int32_t atom = engine.atoms->in_engine[hold.atoms[i]];
             if (atom >= 0) all.push_back({atom, hold.shares[i] * force});
         }
     });
@@ -81,7 +81,7 @@ std::vector<AtomForce> list_forces(const World& world) {
 
 // Where the engine cannot have them the hand feels nothing either.
 void send_forces(World& world) {
-    RemoteEngine& engine = world.resource<RemoteEngine>();
+    RemoteEngine& engine = world.write<RemoteEngine>();
     std::vector<std::int32_t> atoms;
     std::vector<Vec3> forces;
     for (const AtomForce& next : list_forces(world)) {
@@ -93,7 +93,7 @@ void send_forces(World& world) {
     engine.refusal = engine.client->pull(atoms, forces);
     if (engine.refusal.empty()) return;
     for (const Entity hand : find_hands(world)) {
-        if (EngineHold* const hold = world.find<EngineHold>(hand)) hold->is_live = false;
+        if (EngineHold* const hold = world.write<EngineHold>(hand)) hold->is_live = false;
     }
 }
 

@@ -43,10 +43,10 @@ bool is_within_reach(const MoleculePose& pose) noexcept {
 }  // namespace
 
 void follow_hands(World& world, const StepInput& input) {
-    StepReport& report = world.resource<StepReport>();
+    StepReport& report = world.write<StepReport>();
     std::vector<MoleculePose> places;
     std::size_t slot = 0;
-    world.each<Hand>([&](Entity entity, Hand& hand) {
+    world.write_each<Hand>([&](Entity entity, Hand& hand) {
         PALPA_ASSERT(input.hands.size() == input.felt.size());
         const Grip* const grip = world.find<Grip>(entity);
         report.moves.emplace_back();
@@ -75,7 +75,7 @@ void follow_hands(World& world, const StepInput& input) {
 }
 
 void take_hold(World& world, Entity hand, const HandPose& pose) noexcept {
-    Hand& held = *world.find<Hand>(hand);
+    Hand& held = *world.write<Hand>(hand);
     held.travel_m = pose.travel_m;
     held.turn = pose.turn;
 }

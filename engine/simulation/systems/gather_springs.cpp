@@ -40,8 +40,8 @@ std::optional<ModelSpring> find_model_spring(const World& world, const ModelAtom
 }
 
 void gather_springs(World& world, const StepInput& /*input*/) {
-    std::vector<ModelSpring>& springs = world.resource<TorsionState>().springs;
-    std::vector<Entity>& entities = world.resource<GatheredSprings>().entities;
+    std::vector<ModelSpring>& springs = world.write<TorsionState>().springs;
+    std::vector<Entity>& entities = world.write<GatheredSprings>().entities;
     springs.clear();
     entities.clear();
     if (!has_mobile(world) && !find_remote_engine(world)) return;
@@ -57,7 +57,7 @@ void return_ends(World& world) {
     const std::vector<ModelSpring>& springs = world.resource<TorsionState>().springs;
     const std::vector<Entity>& entities = world.resource<GatheredSprings>().entities;
     for (std::size_t i = 0; i < std::min(springs.size(), entities.size()); ++i) {
-        Spring* const spring = world.find<Spring>(entities[i]);
+        Spring* const spring = world.write<Spring>(entities[i]);
         if (spring && spring->ends.size() == 1) spring->place = springs[i].place;
     }
 }

@@ -23,12 +23,12 @@ double find_value(const World& world, const Mark& mark) {
 }  // namespace
 
 void measure(World& world, const StepInput& /*input*/) {
-    ++world.resource<Clock>().steps;
-    StepReport& report = world.resource<StepReport>();
+    ++world.write<Clock>().steps;
+    StepReport& report = world.write<StepReport>();
     world.each<Contact>([&](Entity, const Contact& contact) {
         report.finite = report.finite && contact.answer.model.force_newton.allFinite();
     });
-    world.each<Mark>([&](Entity, Mark& mark) { mark.value = find_value(world, mark); });
+    world.write_each<Mark>([&](Entity, Mark& mark) { mark.value = find_value(world, mark); });
 }
 
 }  // namespace palpa

@@ -58,19 +58,19 @@ void stand_before(Playback& playback, std::size_t due, const std::string& what) 
 
 // From where the frame has it, as a piece of the shape that it has there.
 void hold_in_frame(World& world, Entity hand) {
-    Grip& grip = *world.find<Grip>(hand);
+    Grip& grip = *world.write<Grip>(hand);
     const AtomTable& atoms = world.resource<AtomTable>();
     const Molecule& molecule = *world.find<Molecule>(grip.molecule);
     const Molecule& origin = *world.find<Molecule>(grip.measured_from);
     const Vec3 place = atoms.positions[molecule.reference_atom];
-    *world.find<Pose>(grip.molecule) = {place, Quat::Identity()};
+    *world.write<Pose>(grip.molecule) = {place, Quat::Identity()};
     set_shape(world, grip.molecule);
     grip.anchor = atoms.positions[origin.reference_atom];
     grip.pose = {place - grip.anchor, Quat::Identity()};
     grip.line_origin = grip.freedom == 1
                            ? Vec3(0, grip.pose.place_angstrom.y(), grip.pose.place_angstrom.z())
                            : grip.pose.place_angstrom;
-    Contact& contact = *world.find<Contact>(hand);
+    Contact& contact = *world.write<Contact>(hand);
     contact.near = {};  // other atoms may be around it
     ++contact.answer.model.start;
 }
@@ -78,11 +78,11 @@ void hold_in_frame(World& world, Entity hand) {
 void show(World& world, Playback& playback, std::size_t frame) {
     TrajectoryFrame read;
     playback.trajectory->read_frame(frame, read);
-    AtomTable& atoms = world.resource<AtomTable>();
+    AtomTable& atoms = world.write<AtomTable>();
     atoms.positions = std::move(read.positions);
     playback.shown = frame;
     playback.time_ps = read.time_ps;
-    world.each<Molecule, Pose>([&](Entity, const Molecule& molecule, Pose& pose) {
+    world.write_each<Pose, Molecule>([&](Entity, Pose& pose, const Molecule& molecule) {
         pose = {atoms.positions[molecule.reference_atom], Quat::Identity()};
     });
     for (const Entity hand : find_hands(world)) {
@@ -108,7 +108,7 @@ std::string find_obstacle(const World& world, const Playback& playback) {
 }  // namespace
 
 void play_trajectory(World& world, const StepInput& /*input*/) {
-    Playback* const playback = world.find_resource<Playback>();
+    Playback* const playback = world.write_if<Playback>();
     if (!playback) return;
     playback->problem = find_obstacle(world, *playback);
     if (!playback->problem.empty()) {
@@ -162,7 +162,7 @@ void start_playback(World& world, const std::filesystem::path& file, const Playb
 }
 
 void order_playback(World& world, const PlaybackOrder& order) {
-    Playback* const playback = world.find_resource<Playback>();
+    Playback* const playback = world.write_if<Playback>();
     if (!playback) return;
     const std::size_t last = playback->trajectory->frame_count() - 1;
     if (order.frame || order.paused == false) playback->damage.clear();
@@ -200,7 +200,7 @@ void carry_playback(const World& world, World& other) {
     const Playback* const playback = world.find_resource<Playback>();
     if (!playback) return;
     other.set_resource(*playback);
-    other.resource<Playback>().shown.reset();
+    other.write<Playback>().shown.reset();
 }
 
 }  // namespace palpa

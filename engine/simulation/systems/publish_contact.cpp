@@ -322,7 +322,7 @@ void publish_contact(World& world, const StepInput& input) {
         if (world.find<Grip>(hand)) {
             update_contact(world, hand, slot < input.hands.size() ? input.hands[slot] : HandPose{});
             const std::optional<double>& gain = report.moves[slot].displacement_gain;
-            if (gain) world.find<Contact>(hand)->answer.model.displacement_gain = *gain;
+            if (gain) world.write<Contact>(hand)->answer.model.displacement_gain = *gain;
         }
         ++slot;
     });
@@ -331,7 +331,7 @@ void publish_contact(World& world, const StepInput& input) {
 void update_contact(World& world, Entity hand, const HandPose& pose) {
     update_near(world, hand);
     LocalContactModel contact = build_local_contact(world, hand, pose);
-    LocalContactModel& last = world.find<Contact>(hand)->answer;
+    LocalContactModel& last = world.write<Contact>(hand)->answer;
     contact.model.start = last.model.start;
     if (last.model.relaxed && contact.model.relaxed)
         limit_change(*last.model.relaxed, contact.model.period_s, *contact.model.relaxed);
@@ -368,7 +368,7 @@ void update_near(World& world, Entity hand) {
     if (!needs_field(world, hand)) return;
     constexpr double moved = 0.5;        // Å
     constexpr std::size_t rarely = 500;  // steps
-    NearAtoms& near = world.find<Contact>(hand)->near;
+    NearAtoms& near = world.write<Contact>(hand)->near;
     const std::size_t all = most_neighbours(world, hand);
     const std::size_t most = all - std::min(all, count_atoms(list_others(world, hand)));
     const Vec3& place = grip.pose.place_angstrom;

@@ -22,7 +22,7 @@ bool goes_on(const RelaxStepReport& report) { return report.is_finite && noted_i
 
 RelaxStepReport relax_active(World& world, AdaptiveState& adaptive) {
     const TorsionModel& model = model_of(world);
-    TorsionState& state = world.resource<TorsionState>();
+    TorsionState& state = world.write<TorsionState>();
     const std::size_t steps = world.resource<Solver>().settings.steps;
     const AdaptiveSettings& settings = adaptive.settings;
     AdaptiveStatics& statics = adaptive.statics;
@@ -96,7 +96,7 @@ std::vector<MoleculePose> find_places(const World& world, const SecondOrder& sec
 void hold_back(World& world, const SecondOrder& second, std::span<const MoleculePose> wanted) {
     const std::vector<MoleculePose> found = find_places(world, second);
     for (std::size_t i = 0; i < found.size(); ++i) {
-        MoleculePose& pose = world.find<Grip>(second.hands[i])->pose;
+        MoleculePose& pose = world.write<Grip>(second.hands[i])->pose;
         pose.place_angstrom += found[i].place_angstrom - wanted[i].place_angstrom;
         const Quat back = found[i].orientation * wanted[i].orientation.conjugate();
         pose.orientation = (back * pose.orientation).normalized();
@@ -106,7 +106,7 @@ void hold_back(World& world, const SecondOrder& second, std::span<const Molecule
 // All joints and bases follow the hands by second order.
 RelaxStepReport follow_by_second_order(World& world, const StepInput& input, SecondOrder& second) {
     const TorsionModel& model = model_of(world);
-    TorsionState& state = world.resource<TorsionState>();
+    TorsionState& state = world.write<TorsionState>();
     const double before = second.statics.value.energy;
     const std::optional<Renewal> adopted = adopt_due(world, input, second);
     RelaxStepReport report;
@@ -137,10 +137,7 @@ RelaxStepReport follow_by_second_order(World& world, const StepInput& input, Sec
     report.model_age = step.age;
     report.estimated_error_pN = units::piconewton_per_kcal_per_mol_angstrom * step.error_estimate;
     report.is_finite = step.is_finite;
-    if (report.is_finite) {
-        world.resource<Solver>().safe = state;
-        note_snap(world, report, second);
-    }
+    if (report.is_finite) note_snap(world, report, second);
     return report;
 }
 
@@ -148,13 +145,13 @@ RelaxStepReport follow_by_second_order(World& world, const StepInput& input, Sec
 
 void relax(World& world, const StepInput& input) {
     if (!has_mobile(world)) return;
-    StepReport& report = world.resource<StepReport>();
+    StepReport& report = world.write<StepReport>();
     report.relaxed = relax_mobile(world, input);
     report.finite = report.relaxed->is_finite;
     if (!report.finite) return;
     copy_positions(world);
     const TorsionState& state = world.resource<TorsionState>();
-    world.each<Molecule, Pose>([&](Entity, const Molecule& molecule, Pose& pose) {
+    world.write_each<Pose, Molecule>([&](Entity, Pose& pose, const Molecule& molecule) {
         const TorsionModel& model = model_of(world);
         const auto atom = model_atoms_of(world).in_model(molecule.reference_atom);
         if (!atom) return;  // it is fixed
@@ -164,38 +161,12 @@ void relax(World& world, const StepInput& input) {
 }
 
 RelaxStepReport relax_mobile(World& world, const StepInput& input) {
-    AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    AdaptiveState* const adaptive = world.write_if<AdaptiveState>();
     RelaxStepReport report =
         adaptive ? relax_active(world, *adaptive)
-                 : follow_by_second_order(world, input, world.resource<SecondOrder>());
+                 : follow_by_second_order(world, input, world.write<SecondOrder>());
     return_ends(world);
     return report;
-}
-
-MobileCoordinates save_mobile(const World& world) {
-    const TorsionState& state = world.resource<TorsionState>();
-    return {state.angles, state.turns, state.shifts, state.springs};
-}
-
-void restore_mobile(const MobileCoordinates& saved, World& world) {
-    if (!has_mobile(world)) return;
-    TorsionState& state = world.resource<TorsionState>();
-    if (AdaptiveState* const adaptive = world.find_resource<AdaptiveState>()) {
-        state.angles = saved.angles;
-        state.turns = saved.turns;
-        state.shifts = saved.shifts;
-        state.springs = saved.springs;
-        update_positions(model_of(world), state);
-        adaptive->statics.is_built = false;
-        (void)update_adaptive_forces(model_of(world), adaptive->settings, state, adaptive->statics);
-    } else {
-        state = world.resource<Solver>().safe;
-        // A model of where that went wrong is of no use.
-        SecondOrderStatics& statics = world.resource<SecondOrder>().statics;
-        statics = build_second_order_statics(model_of(world),
-                                             HeldParts(statics.renewals.lineariser.held));
-    }
-    copy_positions(world);
 }
 
 }  // namespace palpa

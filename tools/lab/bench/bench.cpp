@@ -87,12 +87,37 @@ BenchRow bench_step(const std::string& scene_name, World world) {
     return row;
 }
 
+// The copies that a step's transaction makes of what the step writes; the reference says which
+// share of a step they take.
+BenchRow bench_transaction(const std::string& scene_name, World world, double step_us) {
+    BenchRow row{"transaction/" + scene_name, {}, "us"};
+    row.samples = sample(1001, 1e6, [&] {
+        world.begin();
+        world.set_resource(StepReport{});
+        (void)world.write_if<AtomTable>();
+        (void)world.write_if<TorsionState>();
+        (void)world.write_if<GatheredSprings>();
+        (void)world.write_if<Clock>();
+        (void)world.write_if<AdaptiveState>();
+        (void)world.write_if<SecondOrder>();
+        world.write_each<Hand>([](Entity, const Hand&) {});
+        world.write_each<Grip>([](Entity, const Grip&) {});
+        world.write_each<Pose>([](Entity, const Pose&) {});
+        world.write_each<Spring>([](Entity, const Spring&) {});
+        world.write_each<Contact>([](Entity, const Contact&) {});
+        world.commit();
+    });
+    row.reference = fmt::format("{:.2g} of a step", quantile(row.samples, 0.5) / step_us);
+    return row;
+}
+
 // And with all pairs in double, where steps have them in single precision.
 void bench_steps(const std::string& scene_name, const World& world, std::vector<BenchRow>& rows) {
     rows.push_back(bench_step(scene_name, world));
+    rows.push_back(bench_transaction(scene_name, world, quantile(rows.back().samples, 0.5)));
     if (!has_fast_pairs(world, first_hand(world))) return;
     World in_double = world;
-    in_double.resource<Interactions>().precision = PairPrecision::Double;
+    in_double.write<Interactions>().precision = PairPrecision::Double;
     rows.push_back(bench_step(scene_name + "/double", std::move(in_double)));
 }
 

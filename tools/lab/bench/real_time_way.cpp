@@ -33,7 +33,7 @@ Played play(World& world) {
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_s));
     const Entity hand = first_hand(world);
     const MoleculePose start = grip_of(world, hand).pose;
-    SecondOrder& second = world.resource<SecondOrder>();
+    SecondOrder& second = world.write<SecondOrder>();
     RenewalWorker worker;
     Played played;
     double next_place = spacing_angstrom;

@@ -32,7 +32,8 @@ void each_column(AtomTable& atoms, const Use& use) {
 
 // One more of everything up to `count`; there is room for it.
 template <class Value>
-void append(std::vector<Value>& values, std::size_t count) {
+void append(SharedVector<Value>& column, std::size_t count) {
+    std::vector<Value>& values = column.write();
     for (std::size_t i = 0; i < count; ++i) values.push_back(Value(values[i]));
 }
 
@@ -48,7 +49,7 @@ void append_copy(AtomTable& atoms, std::size_t count, std::size_t bonds, const V
 }  // namespace
 
 World repeat_world(World world, std::size_t atoms) {
-    AtomTable& table = world.resource<AtomTable>();
+    AtomTable& table = world.write<AtomTable>();
     table.solvation = {};
     const std::size_t count = table.size(), bonds = table.bonds.size();
     std::vector<Molecule> molecules;
@@ -60,9 +61,9 @@ World repeat_world(World world, std::size_t atoms) {
     const std::size_t copies = (atoms + count - 1) / count;
     auto side = static_cast<std::size_t>(std::cbrt(static_cast<double>(copies)));
     while (side * side * side < copies) ++side;
-    each_column(table, [&](auto& column) { column.reserve(copies * column.size()); });
+    each_column(table, [&](auto& column) { column.write().reserve(copies * column.size()); });
     table.positions.reserve(copies * count);
-    table.bonds.reserve(copies * bonds);
+    table.bonds.write().reserve(copies * bonds);
     world.set_resource(AtomEdition{std::make_shared<int>()});
     for (std::size_t copy = 1; copy < copies; ++copy) {
         const Vec3 cell(static_cast<double>(copy % side), static_cast<double>(copy / side % side),

@@ -26,7 +26,7 @@ ViewSettings settings_of(Representation representation) {
 // As a flexible scene moves between two frames.
 void shake(World& world, std::mt19937& random) {
     std::normal_distribution<double> way(0, 0.03);  // Å
-    for (Vec3& place : world.resource<AtomTable>().positions)
+    for (Vec3& place : world.write<AtomTable>().positions)
         place += Vec3(way(random), way(random), way(random));
 }
 

@@ -18,8 +18,8 @@ using Pull = Eigen::VectorXd;
 
 Pull find_pull(World& world) {
     update_forces(model_of(world), world.resource<Solver>().settings.step.forces,
-                  world.resource<Solver>().statics.memory, world.resource<TorsionState>());
-    update_coordinate_forces(model_of(world), world.resource<TorsionState>());
+                  world.write<Solver>().statics.memory, world.write<TorsionState>());
+    update_coordinate_forces(model_of(world), world.write<TorsionState>());
     const TorsionState state = world.resource<TorsionState>();
     put(state, world);
     Pull pull(model_of(world).coordinates + 3);
@@ -47,7 +47,7 @@ Eigen::MatrixXd find_slopes(World& world) {
     for (Eigen::Index c = 0; c < n; ++c) {
         if (c % 100 == 0) say(fmt::format("second derivatives: {} of {} coordinates", c, n));
         slopes.col(c) = find_slope(world, [&](double by) {
-            add_move(model_of(world), by * Coordinates::Unit(n, c), world.resource<TorsionState>());
+            add_move(model_of(world), by * Coordinates::Unit(n, c), world.write<TorsionState>());
         });
     }
     slopes.col(n) = find_slope(world, [&](double by) { move_held(world, {by, 0, 0}); });

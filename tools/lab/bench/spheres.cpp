@@ -58,7 +58,7 @@ World build_sphere(const SceneDescription& scene, const CutSystem& sphere, const
 
 StrokeResult time_sphere(const BenchStart& start, std::size_t active, int moves) {
     World world = start.world;
-    if (AdaptiveState* const adaptive = world.find_resource<AdaptiveState>())
+    if (AdaptiveState* const adaptive = world.write_if<AdaptiveState>())
         adaptive->settings.limits.degrees_of_freedom = active;
     return time_stroke(start, start.world.resource<TorsionState>(), moves, world);
 }

@@ -50,8 +50,8 @@ void bench_method(const std::string& scene_name, World world, RelaxMethod method
         }
     };
     const JointRelaxReport report =
-        relax_joints(model_of(world), settings, world.resource<TorsionState>(),
-                     world.resource<Solver>().statics, [&](const RelaxProgress& progress) {
+        relax_joints(model_of(world), settings, world.write<TorsionState>(),
+                     world.write<Solver>().statics, [&](const RelaxProgress& progress) {
                          reached(progress.step, progress.energy, progress.rms_force);
                          return true;
                      });

@@ -74,12 +74,12 @@ World build_variant(const BenchStart& start, const Variant& variant) {
 double relax(const BenchStart& start, RelaxMethod method, std::size_t steps, World& world) {
     RelaxSettings settings;
     settings.method = method;
-    Solver& solver = world.resource<Solver>();
+    Solver& solver = world.write<Solver>();
     settings.step.forces = solver.settings.step.forces;
     settings.force_tolerance = start.scene.statics.rest_kcal_per_mol;
     settings.steps = steps;
     const JointRelaxReport report =
-        relax_joints(model_of(world), settings, world.resource<TorsionState>(), solver.statics);
+        relax_joints(model_of(world), settings, world.write<TorsionState>(), solver.statics);
     start_mechanics(world);
     return report.rms_force;
 }

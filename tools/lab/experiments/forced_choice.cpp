@@ -33,9 +33,9 @@ std::string_view mode_name(CouplingMode mode) {
 
 // Every force, energy and stiffness between molecules, this many times.
 void scale_forces(double ratio, World& world) {
-    Interactions& interactions = world.resource<Interactions>();
+    Interactions& interactions = world.write<Interactions>();
     interactions.coulomb_constant *= ratio;
-    for (double& root : world.resource<AtomTable>().sqrt_epsilon) root *= std::sqrt(ratio);
+    for (double& root : world.write<AtomTable>().sqrt_epsilon.write()) root *= std::sqrt(ratio);
     for (ReplacedPair& pair : interactions.replaced_pairs) pair.epsilon *= ratio;
 }
 
