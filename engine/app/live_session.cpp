@@ -179,7 +179,7 @@ void LiveSession::ask(const std::function<void()>& question) {
 
 World LiveSession::copy_world() {
     std::optional<World> world;
-    ask([&] { world = simulation_.world(); });
+    ask([&] { world = simulation_.world().without_caches(); });
     return std::move(*world);
 }
 

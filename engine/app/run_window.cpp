@@ -138,6 +138,7 @@ void Sandbox::frame() {
         frame_.readout.contact = in_hand().contact;
         frame_.readout.holds_something = in_hand().held.count > 0;
         tell_what_is_held();
+        tell_what_is_forgotten();
         tell_what_was_edited();
         tell_recording_notes();
     }

@@ -39,6 +39,7 @@ struct WindowHand {
     HandOrders* orders;
     double mouse_reach_m;
     MouseLead lead{mouse_reach_m};  // by mouse or keys
+    bool is_leading = false;        // a person does so now
     double felt_newton = 0;         // sent to the device at this moment
     Vec3 waiting_m = Vec3::Zero();  // handle travel that the molecule has yet to follow
     bool is_at_wall = false;        // the contact force has stopped the molecule
@@ -107,6 +108,7 @@ private:
     void rest_all();
     void engage(std::size_t slot);
     void clutch(std::size_t slot);
+    void lead(std::size_t slot, bool leads);
     void keep_in_sight(double seconds);
     bool can_choose_device() const { return devices_.open && !options_.study; }
     void look_for_devices();
@@ -168,6 +170,9 @@ private:
     void watch_hover(const Input& input, bool is_free);
     std::string describe_atom(std::uint32_t atom) const;
     void tell_what_is_held();
+    void undo_or_redo(bool undoes);
+    void tell_what_is_forgotten();
+    void add_to_picture(ViewAdditions additions);
     void draw();
     void save(const WindowShot& shot);
     void notice(std::string text, double seconds = notice_s);
@@ -217,6 +222,7 @@ private:
     std::vector<std::string> own_molecules_;            // of the scene, without what was added
     std::vector<SavedView> saved_views_;
     std::vector<SavedView> written_views_;             // as the scene's file has them
+    std::size_t forgotten_ = 0;                        // changes that undo had no room for, as told
     ViewAdditions written_additions_;                  // the same
     std::vector<EditAction> written_edits_;            // the same, but for the scene's own
     std::optional<std::size_t> at_view_;               // of the saved ones, that was gone to last

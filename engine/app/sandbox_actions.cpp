@@ -137,13 +137,16 @@ void Sandbox::perform(Action action) {
     if (action == Action::Reset) lesson_step_.reset();  // its step has a view of its own
     std::vector<Command> commands;
     if (overlay_.perform(action, commands)) {
-        for (const Command& command : commands) {
-            const auto* const change = std::get_if<EditDescription>(&command);
-            change ? edit(change->action) : session_.send(command);
-        }
+        for (const Command& command : commands) session_.send(command);
         return;
     }
     switch (action) {
+        case Action::Undo:
+            undo_or_redo(true);
+            break;
+        case Action::Redo:
+            undo_or_redo(false);
+            break;
         case Action::NextRepresentation:
             choose_next(&ViewSettings::representation, representation_names.size(),
                         for_translation("shown as {}"));

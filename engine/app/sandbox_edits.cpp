@@ -102,7 +102,6 @@ bool Sandbox::refuse_in_replay() {
 void Sandbox::take(const std::string& address) {
     if (refuse_in_replay()) return;
     edit(TakeEdit{address});
-    overlay_.note_edit();
 }
 
 void Sandbox::let_go() {
@@ -115,7 +114,6 @@ void Sandbox::put_back() {
     if (!frame_.readout.holds_something)
         return notice(translated("nothing is in hand that could go back: click on an atom first"));
     edit(PutBackEdit{});
-    overlay_.note_edit();
 }
 
 // The mouse's hand stays where the handle is: it pulls at nothing else.
@@ -178,7 +176,6 @@ void Sandbox::add(AddEdit wanted) {
                                     wanted.name, describe_way(way, camera_)),
                   add_panel_.takes()};
     edit(std::move(wanted));
-    overlay_.note_edit();
 }
 
 void Sandbox::remove_held() {
@@ -189,7 +186,6 @@ void Sandbox::remove_held() {
     announced_ = {molecule, false, frame_.readout.refused_edits,
                   format_translated("{} was removed; Ctrl+Z brings it back", molecule)};
     edit(RemoveEdit{molecule});
-    overlay_.note_edit();
 }
 
 // A refusal is said by the readout.
@@ -203,6 +199,25 @@ void Sandbox::tell_what_was_edited() {
         return;
     }
     announced_.reset();
+}
+
+void Sandbox::undo_or_redo(bool undoes) {
+    if (refuse_in_replay()) return;
+    const std::string& name = undoes ? frame_.readout.undo.undo : frame_.readout.undo.redo;
+    const bool is_known = frame_.readout.edit_under_way.empty();
+    if (name.empty() && is_known)
+        return notice(translated(undoes ? for_translation("there is nothing to undo")
+                                        : for_translation("there is nothing to redo")));
+    if (is_known) notice(fmt::format("{}: {}", translated(undoes ? "Undo" : "Redo"), name));
+    undoes ? edit(UndoEdit{}) : edit(RedoEdit{});
+}
+
+void Sandbox::tell_what_is_forgotten() {
+    const UndoReadout& undo = frame_.readout.undo;
+    if (undo.dropped > std::exchange(forgotten_, undo.dropped))
+        notice(format_translated("undo has no room for more and forgets the oldest change: {}",
+                                 undo.dropped_name),
+               first_notice_s);
 }
 
 void Sandbox::tell_what_is_held() {

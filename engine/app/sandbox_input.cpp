@@ -136,7 +136,10 @@ void Sandbox::move_hand_by_keys(const Input& input, double seconds) {
     const glm::vec3 way = along(Key::Right, Key::Left) * rightward(camera_) +
                           along(Key::Up, Key::Down) * upward(camera_) -
                           along(Key::PageUp, Key::PageDown) * backward(camera_);
-    if (way == glm::vec3(0)) return;
+    if (way == glm::vec3(0)) {
+        if (!holding_ || by_keys() != led_) lead(by_keys(), false);
+        return;
+    }
     engage(by_keys());
     pull(by_keys(),
          static_cast<float>(key_angstrom_per_s * (input.shift ? slow_key : 1) * seconds) * way);
@@ -163,12 +166,20 @@ void Sandbox::rest(std::size_t slot) {
 void Sandbox::engage(std::size_t slot) {
     hands_[slot].lead.engage();
     follow_lead(slot);
+    lead(slot, true);
 }
 
 // The molecule stays where it is, and the handle goes back to its middle.
 void Sandbox::clutch(std::size_t slot) {
     hands_[slot].lead.clutch();
     follow_lead(slot);
+    lead(slot, false);
+}
+
+// Tells the session that a person begins or ends to lead the hand, for undo.
+void Sandbox::lead(std::size_t slot, bool leads) {
+    if (std::exchange(hands_[slot].is_leading, leads) != leads)
+        session_.send(HandLead{slot, leads});
 }
 
 void Sandbox::rest_all() {

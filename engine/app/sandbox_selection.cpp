@@ -82,6 +82,10 @@ bool Sandbox::end_selection() {
     return is_there;
 }
 
+void Sandbox::add_to_picture(ViewAdditions additions) {
+    if (overlay_.set_additions(additions)) session_.send(std::move(additions));
+}
+
 void Sandbox::draw_selection() {
     if (box_) draw_rectangle(box_->corners);
     const SelectionOrder order =
@@ -90,7 +94,7 @@ void Sandbox::draw_selection() {
         if (order.select->empty()) selection_panel_.show({});
         select(*order.select);
     }
-    if (order.additions) overlay_.set_additions(*order.additions);
+    if (order.additions) add_to_picture(*order.additions);
     if (order.focus) look_at_selected_or_ligand();
 }
 
@@ -134,7 +138,7 @@ void Sandbox::pin(std::uint32_t atom) {
         additions.labels.erase(before);
         notice(format_translated("label of {} removed", name));
     }
-    overlay_.set_additions(std::move(additions));
+    add_to_picture(std::move(additions));
 }
 
 void Sandbox::look_at_selected_or_ligand() {

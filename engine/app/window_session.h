@@ -32,7 +32,7 @@ public:
     virtual bool read_frame(LiveFrame& frame) = 0;
 
     // The world between two steps; waits for the one that is under way.
-    virtual World copy_world() = 0;
+    virtual World copy_world() = 0;  // without the caches of its mechanics
 
     // Every servo tick in its order, as long as somebody takes them out: of all hands, by slot.
     virtual bool pop_ticks(std::span<ServoTick> ticks) noexcept = 0;

@@ -19,7 +19,7 @@ struct FileVersion {
 // The versions that this program writes; it reads those of the same major number.
 // Scene: scene.toml, its key `format`, of this version where it is not given. Recording: columns of
 // trace.csv and keys of summary.json, the number is in session.toml. Journal: journal.txt.
-inline constexpr FileVersion scene_version{2, 0}, recording_version{2, 1}, journal_version{2, 1};
+inline constexpr FileVersion scene_version{2, 0}, recording_version{2, 1}, journal_version{2, 2};
 
 // "2.0".
 std::string to_string(FileVersion version);

@@ -13,7 +13,7 @@
 namespace palpa {
 
 // A component with parts that can be rebuilt from the rest of the world, such as factors of
-// matrices. A transaction keeps the component without them; who rolls it back rebuilds them.
+// matrices. A transaction keeps the component without them; the caller of roll_back rebuilds them.
 template <class Component>
 concept HasCaches = requires(const Component& component) {
     { component.without_caches() } -> std::same_as<Component>;
@@ -32,6 +32,7 @@ public:
 
     virtual std::shared_ptr<AnyPool> clone() const = 0;
     virtual std::shared_ptr<AnyPool> clone_without_caches() const = 0;
+    virtual bool has_caches() const noexcept = 0;
     // Removes the entity's component, if it has one.
     virtual void remove(Entity entity) = 0;
     // Memory of the components, without what they share with others.
@@ -98,6 +99,8 @@ public:
             return clone();
         }
     }
+
+    bool has_caches() const noexcept override { return HasCaches<Component>; }
 
     std::size_t count_bytes() const noexcept override {
         std::size_t bytes = owners_.size() * (sizeof(Entity) + sizeof(Component));

@@ -20,6 +20,14 @@ void World::destroy(Entity entity) {
     entities.erase(std::ranges::lower_bound(entities, entity));
 }
 
+World World::without_caches() const {
+    World copy = *this;
+    for (std::shared_ptr<AnyPool>& pool : copy.now_.pools) {
+        if (pool && pool->has_caches()) pool = pool->clone_without_caches();
+    }
+    return copy;
+}
+
 void World::roll_back() noexcept {
     PALPA_ASSERT(before_);
     now_ = std::move(*before_);
@@ -34,7 +42,7 @@ AnyPool& World::write_pool(std::size_t number) {
     if (sharers == 1) return *pool;
     const bool is_of_transaction =
         before_ && number < before_->pools.size() && before_->pools[number] == pool;
-    // The present keeps the caches, and its address, for the thread that fills them.
+    // The present keeps the caches and their address: another thread may be filling them.
     if (is_of_transaction && sharers == 2) {
         before_->pools[number] = pool->clone_without_caches();
     } else {

@@ -117,9 +117,13 @@ public:
         return *found;
     }
 
+    // Returns a copy in which components with caches (pool.h) lack them. Another thread may be
+    // filling the caches meanwhile, and this world goes on with them at the same address.
+    World without_caches() const;
+
     // Begins a transaction: roll_back makes the world what it is now, commit keeps the changes.
-    // Components with caches (pool.h) come back without them. The transaction is this variable's:
-    // copies are not in it, and assignment does not end it.
+    // Components with caches that were written come back without them. The transaction is this
+    // variable's: copies are not in it, and assignment does not end it.
     void begin() { before_ = std::make_unique<Content>(now_); }
     void commit() noexcept { before_.reset(); }
     void roll_back() noexcept;

@@ -13,6 +13,7 @@
 #include "session/lockstep.h"
 #include "session/plan_hand.h"
 #include "session/run_headless.h"
+#include "session/undo_history.h"
 #include "simulation/edit.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
@@ -237,7 +238,7 @@ private:
     Lesson lesson_;
     LessonMeter meter_;
     EditPlayer edits_;
-    EditHistory history_;
+    UndoHistory history_;
     std::vector<LockstepHand> hands_;
     std::uint64_t ticks_ = 0;
     bool has_begun_ = false;  // the present step

@@ -22,6 +22,7 @@ struct HandPose {
     std::optional<MoleculePose> molecule = {};
     std::uint32_t start = 0;   // start number of the contact model in use
     std::uint64_t number = 0;  // number of the servo tick, from 1
+    bool is_clutched = false;  // the handle moves nothing
 };
 
 // The result of a simulation step. It is one step old when it is felt: the paper's z^-1.

@@ -106,6 +106,7 @@ ServoTick step_with_taken(const ServoSettings& settings, ServoState& state, Exch
     tick.is_at_stop = is_at_stop(reading, settings.half_workspace_m);
     tick.contact = state.contact;
     HandPose pose{reading.time_s, state.travel_m, state.turn};
+    pose.is_clutched = clutched;
     Vec3 wanted = Vec3::Zero();
     if (settings.guarded) {
         GuardedState& guarded = state.guarded;

@@ -26,10 +26,10 @@ std::string find_element(const AtomTable& atoms, std::size_t atom) {
 
 std::size_t AtomTable::count_bytes() const noexcept {
     const auto bytes_of = [](const auto&... columns) { return (columns.count_bytes() + ...); };
-    return positions.size() * sizeof(Vec3) +
-           bytes_of(names, element, mass, charge, sqrt_epsilon, half_rmin, type, b_factor, bonds,
-                    solvation.volume, solvation.strength, solvation.inverse_lambda,
-                    solvation.radius);
+    return positions.size() * sizeof(Vec3) + bytes_of(names, element, mass, charge, sqrt_epsilon,
+                                                      half_rmin, type, b_factor, bonds,
+                                                      solvation.volume, solvation.strength,
+                                                      solvation.inverse_lambda, solvation.radius);
 }
 
 std::vector<AtomRange> list_residues(const AtomTable& atoms, std::span<const AtomRange> molecules) {

@@ -4,6 +4,7 @@
 #include "scene/description.h"
 #include "scene/edits.h"
 #include "session/lesson_meter.h"
+#include "session/view_additions.h"
 #include "simulation/accuracy_controller.h"
 #include "simulation/client_pull.h"
 #include "simulation/playback.h"
@@ -35,6 +36,11 @@ struct Reset {
     // On a line: new start distance, Å; unset: unchanged.
     std::optional<double> start_angstrom{};
 };
+// A person begins or ends to lead the hand of a mouse or of keys.
+struct HandLead {
+    std::size_t hand = 0;
+    bool leads = false;
+};
 // Of a replay: where to go, how fast; what is not said stays.
 struct ReplayOrder {
     std::optional<bool> paused{};
@@ -42,8 +48,8 @@ struct ReplayOrder {
     std::optional<double> at_s{};   // going back plays the session anew up to there
 };
 // An edit is made at once, whatever time it says. A pull lasts until the next one.
-using Command = std::variant<LiveSettings, ViewSettings, Pause, StepOnce, Reset, EditDescription,
-                             PlaybackOrder, ReplayOrder, ClientPull>;
+using Command = std::variant<LiveSettings, ViewSettings, ViewAdditions, Pause, StepOnce, Reset,
+                             HandLead, EditDescription, PlaybackOrder, ReplayOrder, ClientPull>;
 
 inline EditDescription edit_now(EditAction action) {
     return {0, 0, std::move(action), {"not done"}};
@@ -56,6 +62,17 @@ struct ReplayState {
     bool is_paused = false;
     std::string verdict;    // how many rows of its trace are the same so far
     LiveSettings settings;  // as the person had them
+};
+
+// What can be undone and redone, by name; empty: nothing.
+struct UndoReadout {
+    std::string undo, redo;
+    std::size_t dropped = 0;  // number of oldest entries that were dropped for lack of room
+    std::string dropped_name;
+    // A number that changes when undo or redo has restored settings or additions to the picture.
+    std::uint64_t restored = 0;
+    LiveSettings settings;
+    ViewAdditions additions;
 };
 
 // What a running scene says, all of one moment between two steps.
@@ -77,6 +94,7 @@ struct Readout {
     std::optional<PlaybackState> playback;  // where a trajectory is played
     std::optional<ReplayState> replay;      // where a recorded session is played again
     LessonMeasures lesson;                  // where the scene has one
+    UndoReadout undo;
 };
 
 // The health of the servo thread.

@@ -127,6 +127,11 @@ Json as_json(const CommandEvent& event) {
     if (const auto* const settings = std::get_if<LiveSettings>(&event.command)) {
         json["period_ms"] = settings->period_ms;
         json["coupling"] = list_settings(settings->coupling);
+    } else if (const auto* const lead = std::get_if<HandLead>(&event.command)) {
+        json["lead"] = lead->leads;
+        json["slot"] = lead->hand;
+    } else if (std::holds_alternative<ViewAdditions>(event.command)) {
+        json["view"] = true;  // that it changed, for undo
     } else if (const auto* const pause = std::get_if<Pause>(&event.command)) {
         json["pause"] = pause->paused;
     } else if (std::holds_alternative<StepOnce>(event.command)) {
@@ -329,12 +334,14 @@ private:
         return device;
     }
 
-    DeviceEvent read_change(const Json& json) const {
+    std::size_t read_slot(const Json& json) const {
         const double slot = read_amount(json, "slot");
         if (slot != std::floor(slot) || slot >= static_cast<double>(journal_.devices.size()))
             fail(fmt::format("there is no hand {}", slot), "the slot of one");
-        return {static_cast<std::size_t>(slot), read_device(json)};
+        return static_cast<std::size_t>(slot);
     }
+
+    DeviceEvent read_change(const Json& json) const { return {read_slot(json), read_device(json)}; }
 
     CommandEvent read_command(const Json& json) const {
         CommandEvent event;
@@ -342,6 +349,10 @@ private:
         event.is_long = json.contains("long") && read<bool>(json, "long");
         if (json.contains("coupling")) {
             event.command = read_settings(json);
+        } else if (json.contains("lead")) {
+            event.command = HandLead{read_slot(json), read<bool>(json, "lead")};
+        } else if (json.contains("view")) {
+            event.command = ViewAdditions{};
         } else if (json.contains("pause")) {
             event.command = Pause{read<bool>(json, "pause")};
         } else if (json.contains("step_once")) {

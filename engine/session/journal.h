@@ -1,7 +1,7 @@
 // A live session on disk, journal.txt: what its simulation and its servos were given, from its
 // first moment, so that it can be played again to the bit. Lines of words between blanks:
 //
-//   # Palpa journal 2.1       the version of its format (core/file_versions.h)
+//   # Palpa journal 2.2       the version of its format (core/file_versions.h)
 //   hand {JSON}             each hand's device, as the session began
 //   p POSES                 the simulation: what the last step found goes to the servos
 //   s POSES TOOK_US         a step, and its wall time

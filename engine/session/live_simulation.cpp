@@ -4,9 +4,11 @@
 #include "core/load_error.h"
 #include "session/run_headless.h"
 #include "simulation/coupling.h"
+#include "simulation/edit.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
+#include "simulation/playback.h"
 #include "simulation/remote_engine.h"
 #include "simulation/resources.h"
 #include "simulation/step.h"
@@ -62,6 +64,8 @@ LiveSimulation::LiveSimulation(const SceneDescription& scene, std::vector<HandDe
       felt_(devices_.size()),
       contacts_(devices_.size()),
       orders_(devices_.size()) {
+    additions_ = additions_of(scene.view);
+    leads_.resize(devices_.size());
     PALPA_ASSERT(!devices_.empty() && devices_.size() <= find_hands(world_).size());
     for (const HandDevice& device : devices_) check_period(device.spec, scene.period_ms * 1e-3);
     if (playback) start_playback(world_, playback->file, playback->order);
@@ -99,9 +103,11 @@ void LiveSimulation::play(const StepEvent& event) {
     if (draft_) return;  // or the edit would undo what the step did
     for (const EditDescription& due : edits_.take_due(time_s_)) edit(due, false);
     if (pull_) world_.set_resource(*pull_);  // what edits brought back has an older one
+    begin_pulls();
     const StepReport& report = step_world(
         world_,
         {poses_, felt_, event.took_us, event.adopts_renewal, [this] { renewals_.await(); }});
+    note_pulls();
     readout_.step_ms = 1e-3 * report.took_us;
     ++readout_.steps;
     readout_.engine = describe_engine(world_);
@@ -122,6 +128,12 @@ void LiveSimulation::play(const HoldEvent& /*event*/) {
 void LiveSimulation::play(const CommandEvent& event) {
     if (const auto* const settings = std::get_if<LiveSettings>(&event.command)) {
         obey(*settings);
+    } else if (const auto* const additions = std::get_if<ViewAdditions>(&event.command)) {
+        if (!undoes_edits_alone_) history_.note_additions(additions_);
+        additions_ = *additions;
+        publish_history();
+    } else if (const auto* const lead = std::get_if<HandLead>(&event.command)) {
+        if (lead->hand < leads_.size()) leads_[lead->hand] = lead->leads;
     } else if (const auto* const pause = std::get_if<Pause>(&event.command)) {
         obey(*pause);
     } else if (std::holds_alternative<StepOnce>(event.command)) {
@@ -147,6 +159,14 @@ void LiveSimulation::play(const DeviceEvent& event) {
 }
 
 void LiveSimulation::obey(const LiveSettings& settings) {
+    const LiveSettings before = choices().settings;
+    set(settings);
+    if (!undoes_edits_alone_)
+        history_.note_settings(before, choices().settings, poses_.front().time_s);
+    publish_history();
+}
+
+void LiveSimulation::set(const LiveSettings& settings) {
     readout_.problem.clear();
     if (can_build_laws(settings.coupling)) {
         scene_.coupling = settings.coupling;
@@ -193,11 +213,13 @@ void LiveSimulation::obey(const Reset& reset) {
         readout_.problem = error.what();
         return;
     }
-    history_ = {};
+    history_.forget_worlds();
+    held_since_.clear();
     draft_.reset();
     unbinding_.reset();
     readout_.edit_under_way.clear();
     edits_ = EditPlayer(scene_);
+    publish_history();
     time_s_ = 0;
     ++edition_;
     readout_.problem.clear();
@@ -239,12 +261,15 @@ void LiveSimulation::play(const AdoptEvent& event) {
     readout_.edit_under_way.clear();
     if (!draft.changed) return refuse(draft.edit, std::move(draft.refusal));
     history_.adopt(world_, std::move(*draft.changed), draft.edit);
+    held_since_.clear();
     publish_edit(event.settles);
 }
 
 void LiveSimulation::start_renewal() {
-    if (SecondOrder* const second = world_.write_if<SecondOrder>())
-        renewals_.start_if_pending(model_of(world_), second->settings, second->statics);
+    const SecondOrder* const second = world_.find_resource<SecondOrder>();
+    if (!second || !second->statics.pending) return;
+    SecondOrder& filled = world_.write<SecondOrder>();
+    renewals_.start_if_pending(model_of(world_), filled.settings, filled.statics);
 }
 
 bool LiveSimulation::has_renewal() {
@@ -254,12 +279,82 @@ bool LiveSimulation::has_renewal() {
 
 void LiveSimulation::edit(const EditDescription& edit, bool settles) {
     renewals_.await();
+    PersonChoices chosen = choices();
     try {
-        history_.apply(world_, edit);
+        history_.apply(world_, edit, chosen);
     } catch (const LoadError& error) {
         return refuse(edit, error.what());
     }
-    publish_edit(settles);
+    if (history_.last_part() == UndoHistory::Part::World) {
+        held_since_.clear();
+        return publish_edit(settles);
+    }
+    additions_ = chosen.additions;
+    if (history_.last_part() == UndoHistory::Part::Settings) set(chosen.settings);
+    ++readout_.undo.restored;
+    publish_history();
+}
+
+// Keeps the world in which each hand begins to hold, or last rested.
+void LiveSimulation::begin_pulls() {
+    constexpr double rest_s = 10, rest_angstrom = 0.02;
+    if (undoes_edits_alone_ || find_remote_engine(world_) || world_.find_resource<Playback>())
+        return;
+    const std::vector<Entity> hands = find_hands(world_);
+    held_since_.resize(poses_.size());
+    for (std::size_t slot = 0; slot < poses_.size(); ++slot) {
+        std::optional<HeldSince>& since = held_since_[slot];
+        const Entity hand = hands[slot];
+        // The handle of a mouse moves by itself while nobody leads it.
+        const bool holds = devices_[slot].stands_still ? leads_[slot] : !poses_[slot].is_clutched;
+        if (!holds || !world_.find<Grip>(hand)) {
+            since.reset();
+            continue;
+        }
+        const Vec3 place = held_place(world_, hand);
+        if (since && (place - since->last).norm() > rest_angstrom) {
+            since->last = place;
+            since->moved_s = time_s_;
+        }
+        if (since && time_s_ - since->moved_s < rest_s) continue;
+        since = HeldSince{world_.without_caches(), place, grip_of(world_, hand).pose.orientation,
+                          poses_[slot].travel_m,   place, time_s_};
+    }
+}
+
+// Adds the pulls in which a person has moved the handle and what it holds.
+void LiveSimulation::note_pulls() {
+    constexpr double least_angstrom = 0.2, least_rad = 0.05, least_m = 0.5e-3;
+    const std::vector<Entity> hands = find_hands(world_);
+    for (std::size_t slot = 0; slot < held_since_.size(); ++slot) {
+        std::optional<HeldSince>& since = held_since_[slot];
+        if (!since || since->is_noted) continue;
+        const Grip& grip = grip_of(world_, hands[slot]);
+        const double turn = grip.pose.orientation.angularDistance(since->turn);
+        const double way = (held_place(world_, hands[slot]) - since->place).norm();
+        const double travel = (poses_[slot].travel_m - since->travel_m).norm();
+        const bool is_moved =
+            way > least_angstrom && (devices_[slot].stands_still || travel > least_m);
+        if (!is_moved && turn < least_rad) continue;
+        history_.note_pull(std::exchange(since->before, {}),
+                           world_.find<Molecule>(grip.molecule)->name);
+        since->is_noted = true;
+        // What other hands begin later is later in the history as well.
+        for (std::size_t other = 0; other < held_since_.size(); ++other) {
+            if (held_since_[other] && !held_since_[other]->is_noted) held_since_[other].reset();
+        }
+        publish_history();
+    }
+}
+
+void LiveSimulation::publish_history() {
+    UndoReadout& undo = readout_.undo;
+    undo.undo = history_.undo_name();
+    undo.redo = history_.redo_name();
+    undo.dropped = history_.dropped();
+    undo.dropped_name = history_.dropped_name();
+    undo.settings = choices().settings;
+    undo.additions = additions_;
 }
 
 void LiveSimulation::refuse(const EditDescription& edit, std::string why) {
@@ -273,10 +368,13 @@ void LiveSimulation::refuse(const EditDescription& edit, std::string why) {
 // now.
 void LiveSimulation::publish_edit(bool settles) {
     readout_.problem.clear();
-    // The window's settings have an undo of their own.
-    if (history_.has_changed_coupling()) scene_.coupling = world_.resource<Coupling>().description;
+    if (history_.has_changed_coupling()) {
+        scene_.coupling = world_.resource<Coupling>().description;
+        ++readout_.undo.restored;
+    }
     set_coupling(scene_.coupling, world_);
     set_period(scene_, world_);
+    publish_history();
     ++edition_;
     post_orders();
     if (settles || (readout_.paused && !all_stand_still())) return play(HoldEvent{});

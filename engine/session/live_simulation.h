@@ -10,8 +10,8 @@
 #include "session/lesson_meter.h"
 #include "session/live_events.h"
 #include "session/unbinding_path.h"
+#include "session/undo_history.h"
 #include "simulation/client_pull.h"
-#include "simulation/edit.h"
 #include "statics/renewal_worker.h"
 
 #include <cstddef>
@@ -76,6 +76,9 @@ public:
     bool all_stand_still() const noexcept;
     // What the simulation reports. Contact, error, work budget and times are filled in by others.
     const Readout& readout() const noexcept { return readout_; }
+    // Keeps pulls, settings and the picture out of the history: for journals of before 2.2.
+    void undo_edits_alone() { undoes_edits_alone_ = true; }
+
     // The edits that a person made and did not undo, without the scene's own.
     std::vector<EditDescription> list_edits() const;
     // The path of what the first hand holds, since it was first held; nothing if no molecule moves
@@ -92,11 +95,16 @@ private:
     void play(const DeviceEvent& event);
     void play(const AdoptEvent& event);
     void obey(const LiveSettings& settings);
+    void set(const LiveSettings& settings);
     void obey(const Pause& pause);
     void obey(const Reset& reset);
     void edit(const EditDescription& edit, bool settles);
     void refuse(const EditDescription& edit, std::string why);
     void publish_edit(bool settles);
+    void begin_pulls();
+    void note_pulls();
+    void publish_history();
+    PersonChoices choices() const { return {{scene_.coupling, scene_.period_ms}, additions_}; }
     void follow_unbinding();
     void take_hold_anew(std::span<const std::uint32_t> last_starts);
     std::vector<std::uint32_t> list_starts() const;
@@ -109,7 +117,21 @@ private:
     ServoLine& line_;
     World world_;
     RenewalWorker renewals_;  // of the world
-    EditHistory history_;
+    UndoHistory history_;
+    ViewAdditions additions_;
+    bool undoes_edits_alone_ = false;
+    // A hold of a hand, since it began or since it last rested.
+    struct HeldSince {
+        World before;  // then, for the history
+        Vec3 place;    // Å, of what is held
+        Quat turn;
+        Vec3 travel_m;          // of the handle
+        Vec3 last;              // Å, where it was when it last moved
+        double moved_s = 0;     // time of that
+        bool is_noted = false;  // it is in the history as a pull
+    };
+    std::vector<std::optional<HeldSince>> held_since_;  // of each hand
+    std::vector<bool> leads_;                           // a person leads the hand by mouse or keys
     // A long edit that is being built.
     struct Draft {
         World before;

@@ -76,7 +76,10 @@ public:
           posts_(journal.devices.size()),
           simulation_(scene, journal.devices, posts_, {}, on_stage),
           servos_(journal.devices.size()),
-          poses_(journal.devices.size()) {}
+          poses_(journal.devices.size()) {
+        constexpr FileVersion first_with_one_history{2, 2};
+        if (journal.version < first_with_one_history) simulation_.undo_edits_alone();
+    }
 
     std::span<const LiveTick> play_tick(std::size_t tick) {
         const JournalTick& when = journal_.ticks[tick];

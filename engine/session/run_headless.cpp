@@ -8,6 +8,7 @@
 #include "haptics/plant.h"
 #include "molecule/coincident_atoms.h"
 #include "session/edit_player.h"
+#include "session/undo_history.h"
 #include "simulation/components.h"
 #include "simulation/edit.h"
 #include "simulation/held.h"
@@ -570,7 +571,7 @@ Summary run_headless(const SceneDescription& scene, World& world, std::span<Devi
     std::vector<LockstepHand> hands = build_hands(scene, world, devices);
     RunLog log(scene, world, hands);
     EditPlayer edits(scene);
-    EditHistory history;
+    UndoHistory history;
 
     std::uint64_t done = 0, drawn = 0, edition = 0;
     const EditFunction make = [&](const EditDescription& edit) {

@@ -191,8 +191,7 @@ Entity find_origin(const World& world, Entity molecule) {
 // Adds the hand's spring where `what` are atoms, as stiff as the scene has it.
 void set_spring(World& world, Entity hand, const AtomsOf& what) {
     if (what.atoms.empty()) return;
-    const double k = world.resource<GrabSettings>().spring_kcal_per_mol_angstrom2;
-    world.set(hand, Spring{.ends = {what}, .k = k, .owner = hand});
+    hold_by_spring(world, hand, what, world.resource<GrabSettings>().spring_kcal_per_mol_angstrom2);
 }
 
 Grip build_grip(const World& world, const AtomsOf& what) {
@@ -338,7 +337,7 @@ void put_back(World& world, Entity hand) {
                                : middle_of(changed, held_part_of(changed, hand));
         grip->pose = {place - grip->anchor, Quat::Identity()};
         *changed.write<Pose>(grip->molecule) = {atoms.positions[molecule.reference_atom],
-                                               Quat::Identity()};
+                                                Quat::Identity()};
         if (changed.find<RigidShape>(grip->molecule)) set_shape(changed, grip->molecule);
         take_hold_anew(changed, hand);
     });
@@ -457,10 +456,8 @@ void set_coupling(World& world, const CouplingEdit& edit) {
 }
 
 void reset(World& world) {
-    World start = load_again(world);
-    keep_clock_and_devices(world, start);
-    ++start.write<Clock>().resets;
-    world = std::move(start);
+    world = continue_with(world, load_again(world));
+    ++world.write<Clock>().resets;
 }
 
 namespace {
@@ -541,82 +538,10 @@ World make_edit(const World& world, const EditDescription& edit) {
     return changed;
 }
 
-void EditHistory::apply(World& world, const EditDescription& edit) {
-    if (std::holds_alternative<UndoEdit>(edit.action)) {
-        at_place(edit, [&] { go(world, undo_, redo_); });
-    } else if (std::holds_alternative<RedoEdit>(edit.action)) {
-        at_place(edit, [&] { go(world, redo_, undo_); });
-    } else {
-        replace(world, make_edit(world, edit), edit);
-    }
-}
-
-void EditHistory::adopt(World& world, World changed, const EditDescription& edit) {
-    keep_clock_and_devices(world, changed);
-    replace(world, std::move(changed), edit);
-}
-
-void EditHistory::replace(World& world, World changed, const EditDescription& edit) {
-    std::swap(world, changed);
-    redo_.clear();
-    Change change;
-    change.is_of_coupling = std::holds_alternative<CouplingEdit>(edit.action) ||
-                            std::holds_alternative<ResetEdit>(edit.action);
-    has_changed_coupling_ = change.is_of_coupling;
-    const bool takes = std::holds_alternative<TakeEdit>(edit.action);
-    const bool lets_go = std::holds_alternative<LetGoEdit>(edit.action);
-    Entry* const ended = takes || lets_go ? end_grip(edit.hand) : nullptr;
-    // Letting go is the end of the grip's entry, where it has one.
-    if (ended && lets_go) {
-        ended->change.edits.push_back(edit);
-        return;
-    }
-    if (takes) change.grip = edit.hand;
-    change.edits.push_back(edit);
-    push(std::move(changed), change, undo_);
-}
-
-std::vector<EditDescription> EditHistory::list_edits() const {
-    std::vector<EditDescription> edits = dropped_edits_;
-    for (const Entry& entry : undo_)
-        edits.insert(edits.end(), entry.change.edits.begin(), entry.change.edits.end());
-    return edits;
-}
-
-EditHistory::Entry* EditHistory::end_grip(std::size_t hand) noexcept {
-    const auto found = std::find_if(undo_.rbegin(), undo_.rend(),
-                                    [&](const Entry& entry) { return entry.change.grip == hand; });
-    if (found == undo_.rend()) return nullptr;
-    found->change.grip.reset();
-    return &*found;
-}
-
-void EditHistory::go(World& world, std::deque<Entry>& from, std::deque<Entry>& to) {
-    if (from.empty())
-        refuse(&from == &undo_ ? "there is nothing to undo" : "there is nothing to redo");
-    Entry entry = std::move(from.back());
-    from.pop_back();
-    has_changed_coupling_ = entry.change.is_of_coupling;
-    keep_clock_and_devices(world, entry.world);
-    push(std::move(world), entry.change, to);
-    world = std::move(entry.world);
-}
-
-void EditHistory::push(World world, const Change& change, std::deque<Entry>& to) {
-    to.push_back({std::move(world), change});
-    while (undo_.size() > 1 && (undo_.size() > most_entries || count_bytes() > most_bytes)) {
-        std::ranges::move(undo_.front().change.edits, std::back_inserter(dropped_edits_));
-        undo_.pop_front();
-        ++dropped_;
-    }
-}
-
-std::size_t EditHistory::count_bytes() const {
-    std::vector<const World*> worlds;
-    for (const std::deque<Entry>* const entries : {&undo_, &redo_}) {
-        for (const Entry& entry : *entries) worlds.push_back(&entry.world);
-    }
-    return World::count_bytes(worlds);
+World continue_with(const World& world, World other) {
+    keep_clock_and_devices(world, other);
+    restore_caches(other);
+    return other;
 }
 
 }  // namespace palpa

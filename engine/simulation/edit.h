@@ -5,12 +5,6 @@
 #include "ecs/world.h"
 #include "scene/edits.h"
 
-#include <cstddef>
-#include <deque>
-#include <optional>
-#include <string>
-#include <string_view>
-
 namespace palpa {
 
 // The edits of scene/edits.h, with a hand where they need one. The hand first releases what it
@@ -34,52 +28,8 @@ void reset(World& world);
 // place. Works on a copy, so it may run in another thread.
 World make_edit(const World& world, const EditDescription& edit);
 
-// Earlier worlds for undo: one for each edit, and one for each grip from taking to release.
-class EditHistory {
-public:
-    static constexpr std::size_t most_entries = 200;
-    static constexpr std::size_t most_bytes = std::size_t{256} << 20;  // approximate total size
-
-    // Carries out an edit of any kind, including undo and redo. Throws LoadError at the edit's
-    // place.
-    void apply(World& world, const EditDescription& edit);
-    // Replaces the world by the result of make_edit on an earlier state; the clock continues, and
-    // hands grip at the present poses of their devices.
-    void adopt(World& world, World changed, const EditDescription& edit);
-
-    // The edits since the world's start that are not undone, in order; a release follows its grip.
-    std::vector<EditDescription> list_edits() const;
-
-    bool can_undo() const noexcept { return !undo_.empty(); }
-    bool can_redo() const noexcept { return !redo_.empty(); }
-    // True if the last edit, undo or redo changed the coupling.
-    bool has_changed_coupling() const noexcept { return has_changed_coupling_; }
-    // Number of oldest entries that were dropped to limit the size.
-    std::size_t dropped() const noexcept { return dropped_; }
-
-private:
-    // The difference between a world and the next one.
-    struct Change {
-        // The hand that grips, until it releases.
-        std::optional<std::size_t> grip;
-        bool is_of_coupling = false;
-        std::vector<EditDescription> edits{};  // one edit, or a grip with its release
-    };
-    struct Entry {
-        World world;
-        Change change;
-    };
-
-    void replace(World& world, World changed, const EditDescription& edit);
-    void go(World& world, std::deque<Entry>& from, std::deque<Entry>& to);
-    void push(World world, const Change& change, std::deque<Entry>& to);
-    std::size_t count_bytes() const;
-    Entry* end_grip(std::size_t hand) noexcept;
-
-    std::deque<Entry> undo_, redo_;
-    std::vector<EditDescription> dropped_edits_;
-    std::size_t dropped_ = 0;
-    bool has_changed_coupling_ = false;
-};
+// Returns `other`, a world from before or after, as what follows on `world`: the clock continues,
+// and hands grip what they hold in it at the present poses of their devices.
+World continue_with(const World& world, World other);
 
 }  // namespace palpa

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace palpa {
 namespace {
@@ -51,6 +52,10 @@ bool is_mobile(const World& world, Entity hand) noexcept {
 
 bool holds_whole(const World& world, Entity hand) noexcept { return !world.find<Spring>(hand); }
 
+void hold_by_spring(World& world, Entity hand, AtomsOf atoms, double k) {
+    world.set(hand, Spring{.ends = {std::move(atoms)}, .k = k, .owner = hand});
+}
+
 AtomsOf held_part_of(const World& world, Entity hand) {
     if (const Spring* const spring = world.find<Spring>(hand)) return spring->ends.front();
     const Entity molecule = grip_of(world, hand).molecule;
@@ -91,12 +96,6 @@ const Contact& contact_of(const World& world, Entity hand) noexcept {
 
 const LocalContactModel& local_contact_of(const World& world) noexcept {
     return contact_of(world, first_hand(world)).answer;
-}
-
-LocalContactModel& write_local_contact(World& world) {
-    Contact* const contact = world.write<Contact>(first_hand(world));
-    PALPA_ASSERT(contact);
-    return contact->answer;
 }
 
 AtomRange held_range(const World& world, Entity hand) noexcept {
@@ -236,12 +235,8 @@ GatheredPoints::GatheredPoints(const AtomTable& atoms, std::span<const std::uint
 }
 
 FieldPoints GatheredPoints::view() const noexcept {
-    return {positions,
-            charge,
-            sqrt_epsilon,
-            half_rmin,
-            type,
-            {volume, strength, inverse_lambda, radius}};
+    return {positions, charge, sqrt_epsilon,
+            half_rmin, type,   {volume, strength, inverse_lambda, radius}};
 }
 
 FieldPoints held_points(const World& world, Entity hand) noexcept {

@@ -22,13 +22,13 @@ const Grip& grip_of(const World& world, Entity hand) noexcept;
 const Contact& contact_of(const World& world, Entity hand) noexcept;
 // That of the first hand.
 const LocalContactModel& local_contact_of(const World& world) noexcept;
-// The same for writing.
-LocalContactModel& write_local_contact(World& world);
 
 // True if the hand holds a part of the mechanics, false for a rigid molecule outside of them.
 bool is_mobile(const World& world, Entity hand) noexcept;
 // True if it holds a molecule as a whole, false for atoms at a spring.
 bool holds_whole(const World& world, Entity hand) noexcept;
+// Adds the hand's spring to these atoms; k in kcal/mol/Å^2.
+void hold_by_spring(World& world, Entity hand, AtomsOf atoms, double k);
 // The atoms at its spring, or all of the molecule.
 AtomsOf held_part_of(const World& world, Entity hand);
 // The molecule, or the spring, of the mechanics that the hand moves.

@@ -251,10 +251,8 @@ void add_hands(const SceneDescription& scene, World& world) {
         const Entity hand = world.create();
         world.set(hand, Hand{.turns = grip.freedom == 6});
         world.set(hand, grip);
-        if (!is_whole) {
-            const double k = tables.grab.spring_kcal_per_mol_angstrom2;
-            world.set(hand, Spring{.ends = {std::move(part)}, .k = k, .owner = hand});
-        }
+        if (!is_whole)
+            hold_by_spring(world, hand, std::move(part), tables.grab.spring_kcal_per_mol_angstrom2);
         world.set(hand, Contact{});
     }
 }

@@ -702,71 +702,6 @@ void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_rel
     copy_positions(world);
 }
 
-namespace {
-
-void keep_history(const AdaptiveStatics& from, AdaptiveStatics& to) {
-    to.h = from.h;
-    to.is_guided = from.is_guided;
-    to.steps_since_choice = from.steps_since_choice;
-    to.choices = from.choices;
-    to.renewals = from.renewals;
-    to.rebuilds = from.rebuilds;
-    to.memory.evaluations = from.memory.evaluations;
-}
-
-}  // namespace
-
-AdaptiveState AdaptiveState::without_caches() const {
-    AdaptiveState kept;
-    kept.settings = settings;
-    keep_history(statics, kept.statics);
-    kept.budget = budget;
-    kept.accuracy = accuracy;
-    kept.rendered = rendered;
-    kept.choose_every = choose_every;
-    kept.mobility_weights = mobility_weights;
-    kept.weighs_hand_proximity = weighs_hand_proximity;
-    kept.near_to = near_to;
-    kept.lacks_caches = true;
-    return kept;
-}
-
-SecondOrder SecondOrder::without_caches() const {
-    SecondOrder kept;
-    kept.settings = settings;
-    kept.statics.renewals.lineariser.held = statics.renewals.lineariser.held;
-    kept.hands = hands;
-    kept.delay_s = delay_s;
-    kept.due = due;
-    kept.most_evaluations = most_evaluations;
-    kept.evaluation_us = evaluation_us;
-    kept.snap = snap;
-    kept.lacks_caches = true;
-    return kept;
-}
-
-ErrorEstimate ErrorEstimate::without_caches() const {
-    return {settings, held, {}, steps, last_pN, felt_pN, evaluations};
-}
-
-// Pairs and their tiles, trial states and assembly of a solver: measured on HIV protease.
-constexpr std::size_t bytes_of_solver_per_atom = 3000;
-
-std::size_t Solver::count_bytes() const noexcept {
-    return bytes_of_solver_per_atom * statics.trial.positions.size();
-}
-
-std::size_t AdaptiveState::count_bytes() const noexcept {
-    return bytes_of_solver_per_atom * statics.across_forces.size();
-}
-
-std::size_t SecondOrder::count_bytes() const noexcept {
-    // Matrices of all coordinates: of the derivatives, their factor, and the model.
-    constexpr std::size_t doubles = 8;
-    const auto size = static_cast<std::size_t>(statics.at.size());
-    return doubles * sizeof(double) * size * size;
-}
-
 World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
                             const HeldPart& held) {
     World world;
@@ -777,13 +712,7 @@ World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
     Grip grip;
     grip.molecule = all;
     world.set(hand, grip);
-    if (held.spring) {
-        Spring spring;
-        spring.ends = {{all, held.spring->atoms}};
-        spring.k = held.spring->k;
-        spring.owner = hand;
-        world.set(hand, std::move(spring));
-    }
+    if (held.spring) hold_by_spring(world, hand, {all, held.spring->atoms}, held.spring->k);
     AtomTable atoms;
     atoms.positions = model.reference;
     world.set_resource(std::move(atoms));
@@ -818,29 +747,6 @@ void start_mechanics(World& world) {
     update_forces(model, solver.settings.step.forces, solver.statics.memory, state);
     if (SecondOrder* const second = world.write_if<SecondOrder>())
         start_second_order(model, second->settings, state, second->statics);
-}
-
-void restore_caches(World& world) noexcept {
-    if (!has_mobile(world)) return;
-    const TorsionModel& model = model_of(world);
-    const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
-    if (adaptive && adaptive->lacks_caches) {
-        AdaptiveState& restored = world.write<AdaptiveState>();
-        AdaptiveStatics statics = build_adaptive_statics(model);
-        keep_history(restored.statics, statics);
-        restored.statics = std::move(statics);
-        restored.lacks_caches = false;
-        (void)update_adaptive_forces(model, restored.settings, world.write<TorsionState>(),
-                                     restored.statics);
-    }
-    // The next step linearises.
-    const SecondOrder* const second = world.find_resource<SecondOrder>();
-    if (second && second->lacks_caches) {
-        SecondOrder& restored = world.write<SecondOrder>();
-        HeldParts held = restored.statics.renewals.lineariser.held;
-        restored.statics = build_second_order_statics(model, std::move(held));
-        restored.lacks_caches = false;
-    }
 }
 
 void move_held(World& world, const Vec3& by) {

@@ -66,7 +66,4 @@ void put_state(World& world, const TorsionState& state);
 // Computes the forces of the present state, from which steps start.
 void start_mechanics(World& world);
 
-// Rebuilds the caches of the mechanics after a transaction that was rolled back.
-void restore_caches(World& world) noexcept;
-
 }  // namespace palpa

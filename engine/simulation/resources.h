@@ -29,6 +29,7 @@ namespace palpa {
 struct Connectivity;
 struct ForceField;
 struct Topology;
+class World;
 
 // The scene as it was loaded; only loading it again reads it.
 struct SceneFile {
@@ -263,5 +264,8 @@ struct StepReport {
     bool finite = true;
     double took_us = 0;  // wall time
 };
+
+// Rebuilds the caches of the mechanics after a transaction that was rolled back.
+void restore_caches(World& world) noexcept;
 
 }  // namespace palpa

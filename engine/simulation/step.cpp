@@ -1,7 +1,9 @@
 #include "simulation/step.h"
 
+#include "simulation/components.h"
 #include "simulation/mechanics.h"
 #include "simulation/observe.h"
+#include "simulation/playback.h"
 #include "simulation/systems/choose_active.h"
 #include "simulation/systems/follow_engine.h"
 #include "simulation/systems/follow_hands.h"
@@ -33,12 +35,19 @@ constexpr System systems[] = {
     measure,          // what can be read
 };
 
-// Returns the world to what it was before the step, but for the report.
+// Returns the world to what it was before the step, but for what tells of the failure: the report,
+// and a contact force that is not finite, which stops the servo. A trajectory goes on.
 void go_back(World& world) {
-    StepReport report = world.resource<StepReport>();
+    const World failed = world;
     world.roll_back();
     restore_caches(world);
-    world.set_resource(std::move(report));
+    world.set_resource(failed.resource<StepReport>());
+    carry_playback(failed, world);
+    failed.each<Contact>([&](Entity hand, const Contact& contact) {
+        const Vec3& force = contact.answer.model.force_newton;
+        if (force.allFinite() || !world.find<Contact>(hand)) return;
+        world.write<Contact>(hand)->answer.model.force_newton = force;
+    });
 }
 
 }  // namespace

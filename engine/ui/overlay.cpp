@@ -83,7 +83,6 @@ double felt_stiffness(const CouplingLaws& laws, const ContactModel& contact) {
 Overlay::Overlay(const SceneDescription& scene)
     : scene_(scene),
       settings_{scene.coupling, scene.period_ms},
-      before_edit_(settings_),
       additions_(additions_of(scene.view)),
       has_flexible_(std::any_of(
           scene.molecules.begin(), scene.molecules.end(),
@@ -137,28 +136,12 @@ void Overlay::change_settings(const LiveSettings& settings, std::vector<Command>
 
 void Overlay::set_mode(CouplingMode mode, std::vector<Command>& commands) {
     if (settings_.coupling.mode == mode || is_replay_) return;
-    undo_.push_back(settings_);
-    redo_.clear();
     LiveSettings settings = settings_;
     settings.coupling.mode = mode;
     change_settings(settings, commands);
 }
 
 bool Overlay::perform(Action action, std::vector<Command>& commands) {
-    const auto go_back = [&](auto& from, auto& to, const EditAction& edit) {
-        if (from.empty()) return;
-        const UndoStep step = from.back();
-        from.pop_back();
-        if (const auto* const settings = std::get_if<LiveSettings>(&step)) {
-            to.emplace_back(settings_);
-            change_settings(*settings, commands);
-        } else if (const auto* const additions = std::get_if<ViewAdditions>(&step)) {
-            to.emplace_back(std::exchange(additions_, *additions));
-        } else {
-            to.emplace_back();
-            commands.emplace_back(edit_now(edit));
-        }
-    };
     switch (action) {
         case Action::PauseOrGo:
             wants_pause_ = !wants_pause_;
@@ -168,9 +151,7 @@ bool Overlay::perform(Action action, std::vector<Command>& commands) {
             wants_pause_ = true;
             commands.emplace_back(StepOnce{});
             return true;
-        case Action::Reset:  // which knows no edits
-            std::erase(undo_, UndoStep());
-            std::erase(redo_, UndoStep());
+        case Action::Reset:
             commands.emplace_back(Reset{});
             return true;
         case Action::Mode1:
@@ -183,12 +164,6 @@ bool Overlay::perform(Action action, std::vector<Command>& commands) {
             set_mode(static_cast<CouplingMode>(mode), commands);
             return true;
         }
-        case Action::Undo:
-            go_back(undo_, redo_, UndoEdit{});
-            return true;
-        case Action::Redo:
-            go_back(redo_, undo_, RedoEdit{});
-            return true;
         case Action::ToggleOverlay:
             shows_overlays_ = !shows_overlays_;
             return true;
@@ -206,22 +181,19 @@ bool Overlay::perform(Action action, std::vector<Command>& commands) {
     }
 }
 
-void Overlay::note_edit() {
-    undo_.emplace_back();
-    redo_.clear();
+bool Overlay::set_additions(ViewAdditions additions) {
+    if (additions_ == additions) return false;
+    additions_ = std::move(additions);
+    return true;
 }
 
-void Overlay::set_additions(ViewAdditions additions) {
-    if (additions_ == additions) return;
-    undo_.emplace_back(std::exchange(additions_, std::move(additions)));
-    redo_.clear();
-}
-
-void Overlay::forget_refused(const Readout& readout) {
-    for (; refused_edits_ < readout.refused_edits; ++refused_edits_) {
-        const auto last = std::find(undo_.rbegin(), undo_.rend(), UndoStep());
-        if (last != undo_.rend()) undo_.erase(std::next(last).base());
-    }
+void Overlay::follow_undo(const UndoReadout& undo, std::vector<Command>& commands) {
+    if (is_replay_ || std::exchange(restored_, undo.restored) == undo.restored) return;
+    additions_ = undo.additions;
+    const bool is_other_period = settings_.period_ms != undo.settings.period_ms;
+    settings_ = undo.settings;
+    update_limit();
+    if (is_other_period) commands.emplace_back(settings_);  // devices hear of it as well
 }
 
 bool Overlay::is_shaking(const Readout& readout) const {
@@ -250,7 +222,6 @@ ScreenArea Overlay::free_area(float width, float height) const {
 
 void Overlay::draw(const Readout& readout, const OverlayStatus& status,
                    std::vector<Command>& commands, std::vector<Action>& actions) {
-    forget_refused(readout);
     follow_restart(readout);
     measured_ = readout.lesson.values;
     selects_ = status.selects;
@@ -259,6 +230,7 @@ void Overlay::draw(const Readout& readout, const OverlayStatus& status,
         settings_ = readout.replay->settings;
         update_limit();
     }
+    follow_undo(readout.undo, commands);
     if (shows_overlays_) {
         draw_scene(readout, status, commands, actions);
         draw_right_panel(commands);

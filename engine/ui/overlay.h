@@ -4,18 +4,17 @@
 #include "session/commands.h"
 #include "session/lesson.h"
 #include "session/statistics.h"
+#include "session/view_additions.h"
 #include "ui/history.h"
 #include "ui/layout.h"
 #include "ui/lesson_panel.h"
 #include "ui/plot.h"
 #include "ui/shortcuts.h"
-#include "ui/view_additions.h"
 #include "view/atom_colours.h"
 
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace palpa {
@@ -64,11 +63,8 @@ public:
     // Carries out an action on settings and overlays; returns false if it belongs to the window.
     bool perform(Action action, std::vector<Command>& commands);
 
-    // Records that an edit was sent, so that undo applies to it; a refused edit is removed again.
-    void note_edit();
-
-    // Sets additions to the picture; a change can be undone.
-    void set_additions(ViewAdditions additions);
+    // Sets additions to the picture; returns false if nothing changes.
+    bool set_additions(ViewAdditions additions);
     const ViewAdditions& additions() const noexcept { return additions_; }
 
     // The name of the device chosen since the last call.
@@ -124,9 +120,8 @@ private:
     void draw_recording(double seconds) const;
     void draw_help();
 
-    void forget_refused(const Readout& readout);
-    // For the previous slider: a finished change becomes one step of undo.
-    void remember_edit(const LiveSettings& before);
+    // Takes over what undo or redo has restored.
+    void follow_undo(const UndoReadout& undo, std::vector<Command>& commands);
     // One slider for a setting.
     void slide(const char* label, double& value, double low, double high, const char* format,
                bool logarithmic, const char* tip);
@@ -136,15 +131,9 @@ private:
     bool is_guarded() const noexcept { return settings_.coupling.mode == CouplingMode::Guarded; }
 
     SceneDescription scene_;
-    LiveSettings settings_, before_edit_;
-    struct EditStep {
-        friend bool operator==(const EditStep&, const EditStep&) = default;
-    };
-    // What undo restores; the session stores the state for edits.
-    using UndoStep = std::variant<EditStep, LiveSettings, ViewAdditions>;
-    std::vector<UndoStep> undo_, redo_;
+    LiveSettings settings_;
     ViewAdditions additions_;
-    std::uint64_t refused_edits_ = 0;
+    std::uint64_t restored_ = 0;  // number of restorations that are taken over
     bool has_flexible_;           // molecules
     double stiffness_limit_ = 0;  // N/m, largest stiffness that is passive at the present period
     // Remaining time of each warning.

@@ -148,19 +148,10 @@ void Overlay::draw_gains(std::vector<Command>& commands) {
 void Overlay::slide(const char* label, double& value, double low, double high, const char* format,
                     bool logarithmic, const char* explanation) {
     ImGui::SetNextItemWidth(-scaled(75));
-    const LiveSettings before = settings_;
     ImGui::SliderScalar(
         labelled(label).c_str(), ImGuiDataType_Double, &value, &low, &high, format,
         ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0));
-    remember_edit(before);
     tip(translated(explanation));
-}
-
-void Overlay::remember_edit(const LiveSettings& before) {
-    if (ImGui::IsItemActivated()) before_edit_ = before;
-    if (!ImGui::IsItemDeactivatedAfterEdit()) return;
-    undo_.push_back(before_edit_);
-    redo_.clear();
 }
 
 void Overlay::draw_gain_sliders() {
@@ -229,11 +220,7 @@ void Overlay::draw_gain_sliders() {
 void Overlay::choose_touch() {
     CouplingDescription& c = settings_.coupling;
     if (c.clamp_N < truncation_newton) return;
-    const auto set = [&](const std::optional<std::array<double, 2>>& range) {
-        undo_.push_back(settings_);
-        redo_.clear();
-        c.feel_pN = range;
-    };
+    const auto set = [&](const std::optional<std::array<double, 2>>& range) { c.feel_pN = range; };
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(translated("feel"));
     for (const Touch& touch : touches) {
@@ -263,17 +250,12 @@ void Overlay::choose_laws() {
         "###laws";
     if (!ImGui::TreeNode(laws.c_str())) return;
     const auto choose = [&](const char* label, const auto& names, auto& choice, const char* text) {
-        const LiveSettings before = settings_;
         int i = static_cast<int>(choice);
         std::vector<const char*> items;
         for (const std::string_view name : names) items.push_back(translated(name.data()));
         ImGui::SetNextItemWidth(-scaled(75));
-        if (ImGui::Combo(labelled(label).c_str(), &i, items.data(),
-                         static_cast<int>(items.size()))) {
-            undo_.push_back(before);
-            redo_.clear();
+        if (ImGui::Combo(labelled(label).c_str(), &i, items.data(), static_cast<int>(items.size())))
             choice = static_cast<std::remove_reference_t<decltype(choice)>>(i);
-        }
         tip(translated(text));
     };
     choose(
@@ -297,12 +279,9 @@ void Overlay::choose_laws() {
 void Overlay::choose_range() {
     constexpr double lowest_pN = 1, highest_pN = 1e5, least_ratio = 1.1;
     CouplingDescription& c = settings_.coupling;
-    const LiveSettings before = settings_;
     bool has_range = c.feel_pN.has_value();
     if (c.clamp_N >= truncation_newton &&
         ImGui::Checkbox(labelled("feel a range").c_str(), &has_range)) {
-        undo_.push_back(before);
-        redo_.clear();
         c.feel_pN.reset();
         if (has_range) c.feel_pN = {c.F_lo_pN, 1e3 * c.F_hi_nN};
     }

@@ -114,6 +114,17 @@ void button(const char* text, const char* explanation, Action action,
     tip(translated(explanation));
 }
 
+// `name`: of what it changes; empty: nothing.
+void undo_button(const char* text, const char* key, const std::string& name, Action action,
+                 std::vector<Action>& actions) {
+    same_line_if_it_fits(translated(text));
+    ImGui::BeginDisabled(name.empty());
+    if (ImGui::Button(labelled(text).c_str())) actions.push_back(action);
+    ImGui::EndDisabled();
+    if (!name.empty())
+        tip(fmt::format("{}. {}: {}", translated(key), translated(text), name).c_str());
+}
+
 }  // namespace
 
 void Overlay::draw_scene(const Readout& readout, const OverlayStatus& status,
@@ -157,6 +168,10 @@ void Overlay::draw_buttons(const Readout& readout, bool is_recording,
     button(for_translation("Reset"),
            for_translation("R. Puts molecules and view back to their start; the settings stay."),
            Action::Reset, actions);
+    undo_button(for_translation("Undo"), for_translation("Ctrl+Z"), readout.undo.undo, Action::Undo,
+                actions);
+    undo_button(for_translation("Redo"), for_translation("Ctrl+Shift+Z"), readout.undo.redo,
+                Action::Redo, actions);
     same_line_if_it_fits(translated("Open"));
     button(for_translation("Open"),
            for_translation("Ctrl+O. Opens another scene, or a structure of your own."),
@@ -210,7 +225,6 @@ void Overlay::choose_mode(std::vector<Command>& commands) {
                    "kHz servo itself moves the molecule in the force field around it. The force "
                    "gain is F_h/F_m, the displacement gain A_d = dx_handle/dx_molecule."));
     int period = static_cast<int>(std::lround(settings_.period_ms));
-    const LiveSettings before = settings_;
     ImGui::SetNextItemWidth(-scaled(70));
     if (ImGui::SliderInt(labelled("period").c_str(), &period, 1, 100, "%d ms",
                          ImGuiSliderFlags_Logarithmic)) {
@@ -218,7 +232,6 @@ void Overlay::choose_mode(std::vector<Command>& commands) {
         settings.period_ms = std::clamp(period, 1, 1000);
         change_settings(settings, commands);
     }
-    remember_edit(before);
     tip(
         translated("T_s, ms: time between two simulation steps. In the paper's modes the force on "
                    "the hand is one period old and stays constant for one period: the longer the "

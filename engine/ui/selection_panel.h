@@ -2,8 +2,8 @@
 #pragma once
 #include "core/translate.h"
 #include "scene/choices.h"
+#include "session/view_additions.h"
 #include "ui/layout.h"
-#include "ui/view_additions.h"
 #include "window/window.h"
 
 #include <optional>

@@ -12,7 +12,7 @@ constexpr std::array list = std::to_array<Shortcut>({
     {Key::Period, false, Action::StepOnce, ".", for_translation("one simulation step")},
     {Key::R, false, Action::Reset, "R", for_translation("molecules and view back to the start")},
     {Key::Z, true, Action::Undo, for_translation("Ctrl+Z"),
-     for_translation("undo a change or a grip")},
+     for_translation("undo a change, a grip or a pull")},
     {Key::Z, true, Action::Redo, for_translation("Ctrl+Shift+Z"), for_translation("redo"), true},
     {Key::Y, true, Action::Redo, for_translation("Ctrl+Y"), for_translation("redo")},
     {Key::G, false, Action::LetGo, "G", for_translation("let go of the molecule in hand")},

@@ -186,6 +186,10 @@ TEST_CASE("a session that was recorded from its middle is played again to the bi
         other.coupling.mode = CouplingMode::VariableForceConstantDisplacement;
         live.session->send(other);
         REQUIRE(live.wait_for_steps(20));
+        live.session->send(ViewAdditions{{}, {"resid 1"}, {}});
+        for (int i = 0; i < 3; ++i) live.edit(UndoEdit{});
+        live.edit(RedoEdit{});
+        REQUIRE(live.wait_for_steps(20));
         live.session->send(Pause{true});
         REQUIRE(live.wait_until([](const LiveFrame& f) { return f.readout.paused; }));
         live.session->send(StepOnce{});

@@ -56,7 +56,7 @@ public:
     // One event: the mouse, a key of the list, a handle pulled somewhere, or an edit.
     void act(Overlay& overlay, LiveSession& session, std::vector<Command>& commands) {
         ImGuiIO& io = ImGui::GetIO();
-        switch (below(5)) {
+        switch (below(6)) {
             case 0:
                 io.MousePos = {static_cast<float>(below(1280)), static_cast<float>(below(800))};
                 io.MouseDown[0] = below(2) == 0;
@@ -70,6 +70,9 @@ public:
                 (void)overlay.perform(keys[below(keys.size())].action, commands);
                 break;
             }
+            case 4:
+                session.send(ViewAdditions{{}, {"resid " + std::to_string(below(3))}, {}});
+                break;
             case 3:
                 session.move_hand({0.2 * (unit() - 0.5), 0.2 * (unit() - 0.5), 0});
                 break;

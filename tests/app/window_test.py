@@ -293,9 +293,11 @@ class Session(unittest.TestCase):
             self.pull_until(display, "Right", lambda now: now[0][0] > fixed[0] + 40)
             self.assertLess(self.way(self.find_waters(display)[1], moved), 6)
 
-            display.do("key", "ctrl+z")
-            self.wait_until(lambda: self.way(self.find_waters(display)[0], fixed) < 6,
-                            "the water back in its place")
+            self.press_until(display, "ctrl+z",  # pulls, as many as there were rests between
+                             lambda: self.way(self.find_waters(display)[0], fixed) < 6,
+                             "the water back in its place")
+            display.do("key", "ctrl+z")  # the grip
+            self.screenshot(display)
             self.pull_until(display, "Left", lambda now: now[1][0] < moved[0] - 40)
             self.assertLess(self.way(self.find_waters(display)[0], fixed), 6)
 
@@ -311,6 +313,24 @@ class Session(unittest.TestCase):
             summary = self.quit(display)
         self.assertEqual([w for w in summary["warnings"] if "too slow" not in w], [])
         self.assertFalse(summary["stopped"])
+
+    def test_a_pull_is_undone_and_redone(self):
+        with Display() as display:
+            self.start(display)
+            display.do("key", "l")
+            first = self.find_waters(display)
+            display.do("mousemove", 660, 330, "keydown", "space")
+            self.draw_until_nearer(display, first, 0.6)
+            display.do("keyup", "space")
+            self.screenshot(display)
+            pulled = self.way(*self.find_waters(display))
+            middle = 0.5 * (pulled + self.way(*first))
+            self.press_until(display, "ctrl+z", lambda: self.way(*self.find_waters(display)) > middle,
+                             "waters as far apart as before the pull")
+            self.press_until(display, "ctrl+shift+z",
+                             lambda: self.way(*self.find_waters(display)) < middle,
+                             "waters as near as after the pull")
+            self.quit(display)
 
     def test_what_is_added_and_removed_is_seen_undone_recorded_and_played_again(self):
         recording = self.folder / "palpa-session-0001"
@@ -425,14 +445,22 @@ class Session(unittest.TestCase):
 
         self.wait_until(pull, "a water that moves")
 
-    def draw_until_nearer(self, display, first):
-        """With Space held; by a tenth or more, of 7 Å."""
+    def draw_until_nearer(self, display, first, share=0.9):
+        """With Space held; to this share of 7 Å or nearer."""
         def draw():
             for _ in range(10):
                 display.do("mousemove_relative", "--", -6, 0)
-            return self.way(*self.find_waters(display)) < 0.9 * self.way(*first)
+            return self.way(*self.find_waters(display)) < share * self.way(*first)
 
         self.wait_until(draw, "waters that are nearer")
+
+    def press_until(self, display, key, is_so, what):
+        def press():
+            display.do("key", key)
+            self.screenshot(display)
+            return is_so()
+
+        self.wait_until(press, what)
 
     def take(self, display, water, number):
         """By a click on it, until it is in hand: that number from the left."""

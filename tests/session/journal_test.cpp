@@ -84,7 +84,8 @@ TEST_CASE("a journal reads as it was written, to the last bit", "[session][journ
              PublishEvent{}, StepEvent{123.4, true}, HoldEvent{}, CommandEvent{settings},
              CommandEvent{Pause{false}}, CommandEvent{StepOnce{}}, CommandEvent{Reset{}},
              CommandEvent{Reset{5.5}}, CommandEvent{edit, true, true}, AdoptEvent{true},
-             AdoptEvent{}, DeviceEvent{1, omni}})
+             AdoptEvent{}, DeviceEvent{1, omni}, CommandEvent{ViewAdditions{{}, {"resid 1"}, {}}},
+             CommandEvent{HandLead{1, true}}})
         writer.add(PlayedEvent{event, {1, 2}});
 
     const std::string text = writer.take();
@@ -117,7 +118,10 @@ TEST_CASE("a journal reads as it was written, to the last bit", "[session][journ
     CHECK_FALSE(journal.hands_of(1)[0].reading.valid);
     CHECK(journal.hands_of(1)[0].contact == 12);
 
-    REQUIRE(journal.events.size() == 12);
+    REQUIRE(journal.events.size() == 14);
+    CHECK(command_of<HandLead>(journal, 13).hand == 1);
+    CHECK(command_of<HandLead>(journal, 13).leads);
+    CHECK(command_of<ViewAdditions>(journal, 12) == ViewAdditions{});  // only that it changed
     CHECK(journal.events[4].poses == std::vector<std::uint64_t>{1, 2});
     CHECK(std::get<StepEvent>(journal.events[1].event).took_us == 123.4);
     CHECK(std::get<StepEvent>(journal.events[1].event).adopts_renewal);
@@ -134,7 +138,7 @@ TEST_CASE("a journal reads as it was written, to the last bit", "[session][journ
     CHECK_FALSE(std::get<AdoptEvent>(journal.events[10].event).settles);
     CHECK(std::get<DeviceEvent>(journal.events[11].event).slot == 1);
     // What was cut off in its last line is what is whole of it.
-    CHECK(parse_journal(text.substr(0, text.size() - 5), "j").events.size() == 11);
+    CHECK(parse_journal(text.substr(0, text.size() - 5), "j").events.size() == 13);
 }
 
 TEST_CASE("a journal has the forces of clients, within their bounds", "[session][journal]") {
@@ -175,17 +179,17 @@ TEST_CASE("a journal states its version, and one of another major version is ref
     const auto error_of_version = [&](const std::string& version, const std::string& lines) {
         return test::load_error_of([&] { (void)read(version, lines); });
     };
-    CHECK(JournalWriter(std::span(&omni, 1)).take().starts_with("# Palpa journal 2.1\n"));
+    CHECK(JournalWriter(std::span(&omni, 1)).take().starts_with("# Palpa journal 2.2\n"));
     CHECK_THAT(error_of_version("1.0", "p 1\n"), Contains("journal format 1.0 is older"));
     const Journal newer = read("2.7", "p 1\n");
     REQUIRE(newer.notes.size() == 1);
-    CHECK_THAT(newer.notes[0], Contains("journal format 2.7 is newer than 2.1"));
+    CHECK_THAT(newer.notes[0], Contains("journal format 2.7 is newer than 2.2"));
     CHECK_THAT(error_of_version("2.7", "q 1\n"), Contains("'q' is not a kind of line") &&
                                                      Contains("a newer Palpa, since the journal"));
     CHECK_THAT(error_of_version("3.0", "p 1\n"),
                Contains("journal.txt:1:1: journal format 3.0 is newer than this program reads"));
     CHECK_THAT(error_of_version("two", "p 1\n"),
-               Contains("is not a journal; expected # Palpa journal 2.1"));
+               Contains("is not a journal; expected # Palpa journal 2.2"));
 }
 
 TEST_CASE("devices of a journal before 2.1 have the cap that the scene gave them",

@@ -3,6 +3,7 @@
 
 #include "haptics/device.h"
 #include "scene/read_scene.h"
+#include "session/undo_history.h"
 #include "simulation/held.h"
 #include "simulation/resources.h"
 #include "tests/support/paths.h"
@@ -67,7 +68,7 @@ TEST_CASE("while a long edit is made the world stands still, and nothing of it i
     live.step(1e-4);
     const std::vector<Vec3> before = live.positions();
     World expected = live.world();
-    EditHistory history;
+    UndoHistory history;
     history.apply(expected, edit_now(TakeEdit{"protease_a:25"}));
 
     live.begin(TakeEdit{"protease_a:25"});
@@ -109,12 +110,190 @@ TEST_CASE("a coupling edit is undone in a live session, and begins from the wind
     live.play(CommandEvent{edit_now(UndoEdit{})});
     CHECK(coupling().mode == CouplingMode::Guarded);
     CHECK(coupling().A_d == 3e7);
-    // Undoing anything else leaves it.
+    // Undoing another edit leaves it.
     live.play(CommandEvent{edit_now(TakeEdit{"fixed"})});
-    settings.coupling.A_d = 4e7;
-    live.play(CommandEvent{settings});
     live.play(CommandEvent{edit_now(UndoEdit{})});
-    CHECK(coupling().A_d == 4e7);
+    CHECK(coupling().A_d == 3e7);
+}
+
+TEST_CASE("edits, settings, additions to the picture and pulls are undone in one order",
+          "[session][undo]") {
+    Live live("scenes/water");
+    const auto readout = [&]() -> const UndoReadout& { return live.simulation.readout().undo; };
+    const auto undo = [&] { live.play(CommandEvent{edit_now(UndoEdit{})}); };
+    const auto redo = [&] { live.play(CommandEvent{edit_now(RedoEdit{})}); };
+    const std::vector<Vec3> start = live.positions();
+    LiveSettings settings{live.simulation.scene().coupling, 1};
+    const double A_d = settings.coupling.A_d;
+    const ViewAdditions labels{{}, {"resid 1"}, {}};
+
+    live.play(CommandEvent{HandLead{0, true}});
+    for (int i = 0; i < 5; ++i) live.step(2e-3);
+    const std::vector<Vec3> pulled = live.positions();
+    REQUIRE(pulled != start);
+    CHECK(readout().undo == "pull of moved");
+    settings.coupling.A_d = 3e7;
+    live.play(CommandEvent{settings});
+    CHECK(readout().undo == "change of A_d");
+    live.play(CommandEvent{labels});
+    CHECK(readout().undo == "change of the picture");
+    live.play(CommandEvent{edit_now(PinEdit{{"fixed:1"}})});
+    CHECK(readout().undo == "measurement");
+
+    undo();
+    CHECK(readout().undo == "change of the picture");
+    CHECK(readout().redo == "measurement");
+    CHECK(readout().additions == labels);
+    undo();
+    CHECK(readout().additions == ViewAdditions{});
+    CHECK(live.simulation.scene().coupling.A_d == 3e7);
+    undo();
+    CHECK(live.simulation.scene().coupling.A_d == A_d);
+    CHECK(readout().settings.coupling.A_d == A_d);
+    CHECK(live.positions() == pulled);
+    undo();
+    CHECK(live.positions() == start);
+    CHECK(readout().undo.empty());
+    undo();
+    CHECK_THAT(live.simulation.readout().problem, Contains("nothing to undo"));
+    redo();
+    CHECK(live.positions() == pulled);
+    redo();
+    redo();
+    CHECK(live.simulation.scene().coupling.A_d == 3e7);
+    CHECK(readout().additions == labels);
+    CHECK(readout().redo == "measurement");
+    // Another change ends what could be redone.
+    live.play(CommandEvent{ViewAdditions{}});
+    CHECK(readout().redo.empty());
+}
+
+TEST_CASE("a pull lasts from taking hold to letting go", "[session][undo]") {
+    Live live("scenes/water");
+    const auto undo = [&] { live.play(CommandEvent{edit_now(UndoEdit{})}); };
+    std::vector<std::vector<Vec3>> at{live.positions()};
+    for (int pull = 0; pull < 3; ++pull) {
+        live.play(CommandEvent{HandLead{0, true}});
+        for (int i = 0; i < 6; ++i) live.step(2e-3);
+        live.play(CommandEvent{HandLead{0, false}});
+        live.step(0);
+        at.push_back(live.positions());
+    }
+    // What moves while nobody leads the hand is no pull, nor is a lead that moves nothing.
+    live.step(2e-3);
+    live.step(-2e-3);
+    live.play(CommandEvent{HandLead{0, true}});
+    for (int i = 0; i < 3; ++i) live.step(0);
+    for (int pull = 2; pull >= 0; --pull) {
+        CHECK(live.simulation.readout().undo.undo == "pull of moved");
+        undo();
+        CHECK((live.positions()[3] - at[pull][3]).norm() < 1e-9);
+    }
+    CHECK(live.simulation.readout().undo.undo.empty());
+    // The hand goes on from there.
+    const std::vector<Vec3> before = live.positions();
+    live.step(0);
+    CHECK(live.positions() == before);
+    live.step(2e-3);
+    CHECK(live.positions() != before);
+}
+
+TEST_CASE("a device that nobody leads by mouse pulls until its clutch is pressed",
+          "[session][undo]") {
+    NoServo servo;
+    LiveSimulation simulation(read_scene(test::in_project("scenes/water")),
+                              {HandDevice{omni_spec(), false}}, servo);
+    std::vector<HandPose> poses{1};
+    const auto pull = [&] {
+        for (int i = 0; i < 6; ++i) {
+            poses[0].travel_m.x() += 2e-3;
+            simulation.play(PublishEvent{}, poses);
+            simulation.play(StepEvent{}, poses);
+        }
+        poses[0].is_clutched = true;
+        simulation.play(StepEvent{}, poses);
+        poses[0].is_clutched = false;
+    };
+    pull();
+    pull();
+    CHECK(simulation.readout().undo.undo == "pull of moved");
+    simulation.play(CommandEvent{edit_now(UndoEdit{})}, poses);
+    CHECK(simulation.readout().undo.undo == "pull of moved");
+    simulation.play(CommandEvent{edit_now(UndoEdit{})}, poses);
+    CHECK(simulation.readout().undo.undo.empty());
+}
+
+TEST_CASE("a hand that holds on and rests for ten seconds begins another pull", "[session][undo]") {
+    Live live("scenes/water");
+    live.play(CommandEvent{HandLead{0, true}});
+    for (int i = 0; i < 6; ++i) live.step(2e-3);
+    const Vec3 first = live.positions()[3];
+    for (int i = 0; i < 10'010; ++i) live.step(0);
+    for (int i = 0; i < 6; ++i) live.step(2e-3);
+    REQUIRE((live.positions()[3] - first).norm() > 0.2);
+    live.play(CommandEvent{edit_now(UndoEdit{})});
+    CHECK((live.positions()[3] - first).norm() < 0.1);
+    CHECK(live.simulation.readout().undo.undo == "pull of moved");
+}
+
+TEST_CASE("a slider's changes of one number are one entry, choices are one each",
+          "[session][undo]") {
+    Live live("scenes/water");
+    const auto undo = [&] { live.play(CommandEvent{edit_now(UndoEdit{})}); };
+    const LiveSettings first{live.simulation.scene().coupling, 1};
+    LiveSettings settings = first;
+    const auto set = [&] { live.play(CommandEvent{settings}); };
+    for (int i = 1; i <= 20; ++i) {
+        settings.coupling.A_d_max = 1e8 + 1e6 * i;
+        set();
+        live.step(0);
+    }
+    const LiveSettings slid = settings;
+    set();  // the same again is no change
+    settings.coupling.mode = CouplingMode::NoForce;
+    set();
+    settings.coupling.mode = CouplingMode::Guarded;
+    set();
+    settings.period_ms = 7;
+    set();
+
+    CHECK(live.simulation.readout().undo.undo == "change of period_ms");
+    undo();
+    CHECK(live.simulation.scene().period_ms == 1);
+    undo();
+    CHECK(live.simulation.scene().coupling.mode == CouplingMode::NoForce);
+    undo();
+    CHECK(live.simulation.scene().coupling == slid.coupling);
+    undo();
+    CHECK(live.simulation.scene().coupling == first.coupling);
+    CHECK(live.simulation.readout().undo.undo.empty());
+}
+
+TEST_CASE("a reset keeps the settings in the history, and no world", "[session][undo]") {
+    Live live("scenes/water");
+    LiveSettings settings{live.simulation.scene().coupling, 1};
+    settings.coupling.mode = CouplingMode::NoForce;
+    live.play(CommandEvent{edit_now(PinEdit{{"fixed:1"}})});
+    live.play(CommandEvent{settings});
+    live.play(CommandEvent{Reset{}});
+    CHECK(live.simulation.readout().undo.undo == "change of mode");
+    live.play(CommandEvent{edit_now(UndoEdit{})});
+    CHECK(live.simulation.scene().coupling.mode == CouplingMode::Guarded);
+    CHECK(live.simulation.readout().undo.undo.empty());
+}
+
+TEST_CASE("at its limit the history says what it forgets", "[session][undo]") {
+    Live live("scenes/water");
+    const auto name = [](std::size_t i) { return "resid " + std::to_string(i); };
+    live.play(CommandEvent{edit_now(PinEdit{{"fixed:1"}})});
+    for (std::size_t i = 1; i < UndoHistory::most_entries; ++i)
+        live.play(CommandEvent{ViewAdditions{{}, {name(i)}, {}}});
+    CHECK(live.simulation.readout().undo.dropped == 0);
+    live.play(CommandEvent{ViewAdditions{}});
+    CHECK(live.simulation.readout().undo.dropped == 1);
+    CHECK(live.simulation.readout().undo.dropped_name == "measurement");
+    // What can no longer be undone stays among the edits of the session.
+    CHECK(live.simulation.list_edits().size() == 1);
 }
 
 TEST_CASE("a long edit that is refused says so and changes nothing", "[session][edits]") {
@@ -174,4 +353,22 @@ TEST_CASE("only what needs new mechanics of many atoms takes long", "[session][e
     CHECK_FALSE(live.simulation.takes_long(edit_now(UndoEdit{})));
     CHECK_FALSE(live.simulation.takes_long(edit_now(PinEdit{{"protease_a:25 CA"}})));
     CHECK_FALSE(small.simulation.takes_long(edit_now(TakeEdit{"fixed"})));
+}
+
+TEST_CASE("what the scene adds to the picture stays when settings are undone", "[session][undo]") {
+    SceneDescription scene = read_scene(test::in_project("scenes/water"));
+    scene.view.labels = {"resid 1"};
+    scene.coupling.feel_pN = {20, 3000};
+    NoServo servo;
+    LiveSimulation simulation(scene, {HandDevice{omni_spec(), true}}, servo);
+    const std::vector<HandPose> poses{1};
+    LiveSettings settings{scene.coupling, scene.period_ms};
+    settings.coupling.feel_pN.reset();  // a setting that is unset is a change as well
+
+    simulation.play(CommandEvent{settings}, poses);
+    CHECK(simulation.readout().undo.undo == "change of feel_pN");
+    simulation.play(CommandEvent{edit_now(UndoEdit{})}, poses);
+
+    CHECK(simulation.scene().coupling == scene.coupling);
+    CHECK(simulation.readout().undo.additions.labels == scene.view.labels);
 }

@@ -1,5 +1,6 @@
 // Edits between two steps: what hands take, what is added and removed, and the way back.
 #include "simulation/edit.h"
+#include "session/undo_history.h"
 
 #include "core/files.h"
 #include "core/units.h"
@@ -373,7 +374,7 @@ TEST_CASE("what files lack is refused by name, and nothing changes", "[simulatio
     };
     World world = load_waters();
     const std::string before = world_bytes(world);
-    EditHistory history;
+    UndoHistory history;
     const AddEdit add{
         "", "", "new", {0, 0, 50}, in_folder(row.structure), in_folder(row.topology), row.segment};
 
@@ -430,7 +431,7 @@ TEST_CASE("an edit that cannot be made leaves everything as it was, and says why
     }));
     World world = load_two();
     const std::string before = world_bytes(world);
-    EditHistory history;
+    UndoHistory history;
 
     const std::string error = load_error_of([&] { history.apply(world, edit_of(row.action)); });
 
@@ -447,7 +448,7 @@ TEST_CASE("undo and redo lead back through random edits and moves, to the byte",
     World world = is_mobile ? load_two() : load_waters();
     const std::string first = is_mobile ? "resting" : "fixed",
                       second = is_mobile ? "held" : "moved";
-    EditHistory history;
+    UndoHistory history;
     std::vector<std::string> states;  // before each entry
     const auto draw = [&](unsigned n) { return random() % n; };
     const auto move = [&] {
@@ -528,7 +529,7 @@ TEST_CASE("nothing is added on top of what is there, and the message says where 
 
 TEST_CASE("undo takes back a grip from taking hold to letting go", "[simulation][edit]") {
     World world = load_rigid();
-    EditHistory history;
+    UndoHistory history;
     const std::string before = world_bytes(world);
     history.apply(world, edit_of(TakeEdit{"resting:2"}));
     for (int i = 1; i <= 5; ++i)
@@ -548,7 +549,7 @@ TEST_CASE("undo takes back a grip from taking hold to letting go", "[simulation]
 
 TEST_CASE("what a scene began with is let go, and that is undone", "[simulation][edit]") {
     World world = load_rigid();
-    EditHistory history;
+    UndoHistory history;
     const std::string before = world_bytes(world);
     history.apply(world, edit_of(LetGoEdit{}));
     CHECK(world.find<Grip>(first_hand(world)) == nullptr);
@@ -596,7 +597,7 @@ TEST_CASE("a reset is the scene as its file has it, and can be undone", "[simula
     const std::string name = is_mobile ? "resting" : "fixed";
     const std::string start = world_bytes(world);
     const CouplingMode mode = world.resource<Coupling>().description.mode;
-    EditHistory history;
+    UndoHistory history;
     history.apply(world, edit_of(AddEdit{"", name, "another", {30, 0, 0}}));
     history.apply(world, edit_of(TakeEdit{"another"}));
     history.apply(world, edit_of(CouplingEdit{{"mode=3"}}));
@@ -627,7 +628,7 @@ TEST_CASE("a reset to files that are gone leaves everything as it was",
     const std::filesystem::path copy = folder.path() / "water";
     std::filesystem::copy(test::in_project("scenes/water"), copy);
     World world = load_world(read_scene(copy));
-    EditHistory history;
+    UndoHistory history;
     history.apply(world, edit_of(TakeEdit{"fixed"}));
     const std::string before = world_bytes(world);
     std::filesystem::remove(copy / "dimer.crd");
@@ -640,13 +641,13 @@ TEST_CASE("a reset to files that are gone leaves everything as it was",
 
 TEST_CASE("only so many entries are kept, and the oldest go first", "[simulation][edit]") {
     World world = load_waters();
-    EditHistory history;
-    for (std::size_t i = 0; i < EditHistory::most_entries + 5; ++i)
+    UndoHistory history;
+    for (std::size_t i = 0; i < UndoHistory::most_entries + 5; ++i)
         history.apply(world, edit_of(AppearanceEdit{"fixed", {}, {}, i % 2 == 0}));
     CHECK(history.dropped() == 5);
     std::size_t undone = 0;
     for (; history.can_undo(); ++undone) history.apply(world, edit_of(UndoEdit{}));
-    CHECK(undone == EditHistory::most_entries);
+    CHECK(undone == UndoHistory::most_entries);
 }
 
 TEST_CASE(

@@ -28,6 +28,10 @@ using namespace palpa;
 
 namespace {
 
+LocalContactModel& write_local_contact(World& world) {
+    return world.write<Contact>(first_hand(world))->answer;
+}
+
 constexpr double dimer_distance = 2.6, dimer_step = 0.002;  // Å; the force is steep there
 
 // The guarded dimer, with a contact model of where it stands.

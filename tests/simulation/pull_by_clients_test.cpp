@@ -1,5 +1,6 @@
 // Forces of clients, against Hooke's law of the springs that hold what they pull.
 #include "simulation/systems/pull_by_clients.h"
+#include "session/undo_history.h"
 
 #include "core/units.h"
 #include "simulation/client_pull.h"
@@ -167,7 +168,7 @@ TEST_CASE("undo and edits find the springs of hands and restraints in their plac
     world.set_resource(pull);
     step_on(world, 100);
     const Vec3 pulled = centre_of_water(world, "free");
-    EditHistory history;
+    UndoHistory history;
     history.apply(world, {0, 0, TakeEdit{"free:1"}, {"test", 1, 0}});
     REQUIRE(spring_of(world, first_hand(world)));
     step_on(world, 50);

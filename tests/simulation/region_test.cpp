@@ -1,5 +1,6 @@
 // Only what is around the hand moves, and the mechanics have no more atoms than that needs.
 #include "simulation/region.h"
+#include "session/undo_history.h"
 
 #include "assembly/bodies.h"
 #include "assembly/joints.h"
@@ -357,7 +358,7 @@ TEST_CASE("where no other region can be had the old one goes on", "[simulation][
 TEST_CASE("a region goes with the hand, stays when it lets go, and comes back when undone",
           "[simulation][region][edit]") {
     World world = load_flap({"statics.pairs=fast"});
-    EditHistory history;
+    UndoHistory history;
     const auto edit = [&](EditAction action) {
         history.apply(world, {0, 0, std::move(action), {"scene.toml", 7, 0}});
     };

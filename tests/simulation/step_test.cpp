@@ -86,3 +86,20 @@ TEST_CASE("a hand pose that is no number moves nothing and is reported", "[simul
     CHECK(local_contact_of(world).model.molecule.place_angstrom.x() == 7);
     CHECK(force_along_line(world).energy == Approx(felt.potential_kcal_per_mol));
 }
+
+TEST_CASE("a contact force that is not finite stays until a step is finite again, for the servo",
+          "[simulation][step]") {
+    World world = load_world(test::water_scene({"mode=4"}));
+    const AtomRange held = held_range(world, first_hand(world));
+    const std::vector<Vec3> before = world.resource<AtomTable>().positions;
+    const double charge = world.resource<AtomTable>().charge[held.first];
+    world.write<AtomTable>().charge.write()[held.first] = std::numeric_limits<double>::quiet_NaN();
+
+    CHECK_FALSE(step_world(world, HandPose{}, local_contact_of(world).model).finite);
+    CHECK_FALSE(local_contact_of(world).model.force_newton.allFinite());
+    CHECK(world.resource<AtomTable>().positions == before);
+
+    world.write<AtomTable>().charge.write()[held.first] = charge;
+    CHECK(step_world(world, HandPose{}, {}).finite);
+    CHECK(local_contact_of(world).model.force_newton.allFinite());
+}

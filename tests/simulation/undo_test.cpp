@@ -1,6 +1,7 @@
 // Undo and redo through 1,000 random sequences of edits and moves, to the byte.
 #include "core/load_error.h"
 #include "scene/read_scene.h"
+#include "session/undo_history.h"
 #include "simulation/edit.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
@@ -176,16 +177,17 @@ private:
         redone_.clear();
         const bool takes = std::holds_alternative<TakeEdit>(edit.action);
         const bool lets_go = std::holds_alternative<LetGoEdit>(edit.action);
-        // Letting go belongs to the entry of the hand's grip, where that has one.
+        // Letting go belongs to the entry of the hand's grip if that is the last one.
         if ((takes || lets_go) && end_grip(edit.hand) && lets_go) return;
         undone_.push_back({std::move(before), takes ? std::optional(edit.hand) : std::nullopt});
     }
 
+    // Returns true if the grip's entry is the last.
     bool end_grip(std::size_t hand) {
         for (std::size_t i = undone_.size(); i-- > 0;) {
             if (undone_[i].grip != hand) continue;
             undone_[i].grip.reset();
-            return true;
+            return i + 1 == undone_.size();
         }
         return false;
     }
@@ -208,7 +210,7 @@ private:
 
     World world_;
     std::mt19937 random_;
-    EditHistory history_;
+    UndoHistory history_;
     std::string first_, first_later_;
     std::vector<HandPose> poses_;
     std::vector<Entry> undone_, redone_;  // what undo and redo lead to, the next last

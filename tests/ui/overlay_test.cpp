@@ -90,72 +90,34 @@ void name_font(const char* file) {
 
 }  // namespace
 
-TEST_CASE("settings and edits are undone in the order in which they were made", "[ui]") {
+TEST_CASE("settings and additions are those that undo has restored", "[ui]") {
     Screen screen;
-    const CouplingMode first = screen.overlay.settings().coupling.mode;
-    // What undo or redo asks for: 'u' and 'r' of the session, 's' a change of settings, '-'
-    // nothing.
-    const auto press = [&](Action action) {
-        screen.commands.clear();
-        REQUIRE(screen.overlay.perform(action, screen.commands));
-        if (screen.commands.empty()) return '-';
-        const auto* const edit = std::get_if<EditDescription>(&screen.commands.back());
-        if (!edit) return 's';
-        return std::holds_alternative<UndoEdit>(edit->action) ? 'u' : 'r';
-    };
-    screen.overlay.note_edit();
-    (void)press(Action::Mode2);
-    screen.overlay.note_edit();
-
-    CHECK(press(Action::Undo) == 'u');
-    CHECK(press(Action::Undo) == 's');
-    CHECK(screen.overlay.settings().coupling.mode == first);
-    CHECK(press(Action::Redo) == 's');
-    CHECK(press(Action::Redo) == 'r');
-    CHECK(press(Action::Redo) == '-');
-
-    // One that was refused was none.
-    screen.overlay.note_edit();
-    ++screen.readout.refused_edits;
-    screen.frame();
-    CHECK(press(Action::Undo) == 'u');
-    CHECK(press(Action::Undo) == 's');
-    CHECK(press(Action::Undo) == 'u');
-    CHECK(press(Action::Undo) == '-');
-
-    // A reset knows no edits, and leaves settings.
-    (void)press(Action::Mode3);
-    screen.overlay.note_edit();
-    (void)press(Action::Reset);
-    CHECK(press(Action::Undo) == 's');
-    CHECK(press(Action::Undo) == '-');
-}
-
-TEST_CASE("what is added to the picture is undone among settings", "[ui]") {
-    Screen screen;
+    const LiveSettings first = screen.overlay.settings();
     const ViewAdditions none = screen.overlay.additions();
-    const ViewAdditions one{{}, {"resid 1"}, {}}, two{{{.of = "water"}}, {"resid 1"}, {"ion"}};
-    screen.overlay.set_additions(one);
-    screen.overlay.set_additions(one);  // no change, and no step
+    const ViewAdditions one{{}, {"resid 1"}, {}};
+    CHECK(screen.overlay.set_additions(one));
+    CHECK_FALSE(screen.overlay.set_additions(one));
     screen.overlay.perform(Action::Mode2, screen.commands);
-    screen.overlay.set_additions(two);
-    screen.commands.clear();
-
-    screen.overlay.perform(Action::Undo, screen.commands);
-    CHECK(screen.overlay.additions() == one);
-    CHECK(screen.commands.empty());  // the window sends pictures
-    screen.overlay.perform(Action::Undo, screen.commands);
     CHECK(screen.commands.size() == 1);
-    screen.overlay.perform(Action::Undo, screen.commands);
+    screen.readout.undo.settings = first;
+    screen.readout.undo.additions = none;
+
+    screen.frame();  // the session has not heard of them yet
+    CHECK(screen.overlay.additions() == one);
+    CHECK_FALSE(screen.overlay.settings() == first);
+    ++screen.readout.undo.restored;
+    screen.commands.clear();
+    screen.frame();
     CHECK(screen.overlay.additions() == none);
-    screen.overlay.perform(Action::Undo, screen.commands);
-    CHECK(screen.overlay.additions() == none);
-    for (int i = 0; i < 3; ++i) screen.overlay.perform(Action::Redo, screen.commands);
-    CHECK(screen.overlay.additions() == two);
-    screen.overlay.perform(Action::Undo, screen.commands);
-    screen.overlay.set_additions(none);
-    screen.overlay.perform(Action::Redo, screen.commands);  // nothing is left
-    CHECK(screen.overlay.additions() == none);
+    CHECK(screen.overlay.settings() == first);
+    CHECK(screen.commands.empty());
+
+    // Devices hear of another period.
+    screen.readout.undo.settings.period_ms = 20;
+    ++screen.readout.undo.restored;
+    screen.frame();
+    CHECK(screen.commands.size() == 1);
+    CHECK(screen.overlay.settings().period_ms == 20);
 }
 
 TEST_CASE("panels stay in the window with text twice as large, and without a font file",
@@ -193,8 +155,7 @@ TEST_CASE("panels stay in the window with text twice as large, and without a fon
     }
 }
 
-TEST_CASE("a dragged slider changes a gain at once, and one undo takes the whole drag back",
-          "[ui][overlay]") {
+TEST_CASE("a dragged slider changes a gain at once", "[ui][overlay]") {
     Screen screen;
     screen.frame();
     screen.frame();
@@ -210,16 +171,6 @@ TEST_CASE("a dragged slider changes a gain at once, and one undo takes the whole
     CHECK_FALSE(after == before);
     CHECK(after == screen.overlay.settings());
     CHECK(after.coupling.mode == before.coupling.mode);
-
-    screen.commands.clear();
-    CHECK(screen.overlay.perform(Action::Undo, screen.commands));
-    REQUIRE(screen.commands.size() == 1);
-    CHECK(std::get<LiveSettings>(screen.commands[0]) == before);
-    screen.overlay.perform(Action::Redo, screen.commands);
-    CHECK(screen.overlay.settings() == after);
-    screen.overlay.perform(Action::Undo, screen.commands);
-    screen.overlay.perform(Action::Undo, screen.commands);  // nothing is left
-    CHECK(screen.overlay.settings() == before);
 }
 
 TEST_CASE("in a small window panels are folded, and the molecule is seen", "[ui][overlay]") {

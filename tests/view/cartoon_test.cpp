@@ -379,7 +379,8 @@ TEST_CASE("a ribbon is open where residues are missing, and between chains", "[v
         CHECK(drawing.parts.shown == std::vector<bool>{1, 1, 1, 1, 1, 1, 1, 1, 0});
     }
     SECTION("another chain") {
-        for (std::size_t i = 8; i < drawing.atoms.size(); ++i) drawing.atoms.names.write()[i].segment = "B";
+        for (std::size_t i = 8; i < drawing.atoms.size(); ++i)
+            drawing.atoms.names.write()[i].segment = "B";
         drawing.draw();
         CHECK(count_bodies(drawing.mesh()) == 2);
     }

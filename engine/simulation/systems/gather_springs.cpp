@@ -57,8 +57,9 @@ void return_ends(World& world) {
     const std::vector<ModelSpring>& springs = world.resource<TorsionState>().springs;
     const std::vector<Entity>& entities = world.resource<GatheredSprings>().entities;
     for (std::size_t i = 0; i < std::min(springs.size(), entities.size()); ++i) {
-        Spring* const spring = world.write<Spring>(entities[i]);
-        if (spring && spring->ends.size() == 1) spring->place = springs[i].place;
+        const Spring* const spring = world.find<Spring>(entities[i]);
+        if (spring && spring->ends.size() == 1 && spring->place != springs[i].place)
+            world.write<Spring>(entities[i])->place = springs[i].place;
     }
 }
 

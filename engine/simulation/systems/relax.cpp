@@ -162,9 +162,9 @@ void relax(World& world, const StepInput& input) {
 
 RelaxStepReport relax_mobile(World& world, const StepInput& input) {
     AdaptiveState* const adaptive = world.write_if<AdaptiveState>();
-    RelaxStepReport report =
-        adaptive ? relax_active(world, *adaptive)
-                 : follow_by_second_order(world, input, world.write<SecondOrder>());
+    RelaxStepReport report = adaptive
+                                 ? relax_active(world, *adaptive)
+                                 : follow_by_second_order(world, input, world.write<SecondOrder>());
     return_ends(world);
     return report;
 }

@@ -70,9 +70,9 @@ TEST_CASE("a step that fails restores every component and resource", "[simulatio
     CAPTURE(method);
     std::vector<std::string> settings{"statics.method=" + method};
     if (method == "quasi-static") settings.emplace_back("statics.active=12");
-    World world = with_tags(load_world(
-        method == "rigid" ? test::water_scene({"mode=4"})
-                          : read_scene(test::test_data("two_peptides"), settings)));
+    World world = with_tags(
+        load_world(method == "rigid" ? test::water_scene({"mode=4"})
+                                     : read_scene(test::test_data("two_peptides"), settings)));
     world.set_resource(Scribbler{{}, false});
     for (int i = 0; i < 3; ++i) REQUIRE(step(world, 0.1 * i));
 

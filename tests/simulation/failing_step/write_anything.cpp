@@ -39,8 +39,10 @@ constexpr Write writes[] = {
     },
     [](World& world, std::mt19937&) { world.remove_resource<SecondOrder>(); },
     [](World& world, std::mt19937&) {
-        if (SecondOrder* const second = world.write_if<SecondOrder>()) second->statics.linear = nullptr;
-        if (AdaptiveState* const adaptive = world.write_if<AdaptiveState>()) adaptive->statics.h = 5;
+        if (SecondOrder* const second = world.write_if<SecondOrder>())
+            second->statics.linear = nullptr;
+        if (AdaptiveState* const adaptive = world.write_if<AdaptiveState>())
+            adaptive->statics.h = 5;
     },
     [](World& world, std::mt19937&) { world.set_resource(Clock{1, 2, 3}); },
     [](World& world, std::mt19937&) { world.write<Coupling>().pairs_per_tick = 1; },

@@ -1,6 +1,7 @@
 // A system of 30 lines is one file and one line in the list of the step: this program has the
 // engine's own step.cpp with that line.
 #include "tests/simulation/wind/wind.h"
+#include "session/undo_history.h"
 
 #include "core/files.h"
 #include "core/text.h"
@@ -129,7 +130,7 @@ TEST_CASE("in a hand there is no wind", "[wind]") {
 
 TEST_CASE("edits and undo find the wind as it was", "[wind]") {
     World world = water_in_the_wind();
-    EditHistory history;
+    UndoHistory history;
     history.apply(world, {0, 0, AddEdit{"TIP3", "", "other", {0, 30, 60}}, {"wind", 1, 0}});
     step(world, 20);
     CHECK(centre_of(world, "other").x() > 0.01);

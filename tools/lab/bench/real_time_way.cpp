@@ -33,7 +33,6 @@ Played play(World& world) {
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_s));
     const Entity hand = first_hand(world);
     const MoleculePose start = grip_of(world, hand).pose;
-    SecondOrder& second = world.write<SecondOrder>();
     RenewalWorker worker;
     Played played;
     double next_place = spacing_angstrom;
@@ -45,15 +44,19 @@ Played play(World& world) {
         pose.molecule = {start.place_angstrom + Vec3(way, 0, 0), start.orientation};
         pose.start = contact_of(world, hand).answer.model.start;
         const ContactModel felt = contact_of(world, hand).answer.model;
-        const StepReport& report = step_world(
-            world,
-            {{&pose, 1}, {&felt, 1}, {}, worker.is_ready(second.statics), [&] { worker.await(); }});
+        const StepReport& report =
+            step_world(world, {{&pose, 1},
+                               {&felt, 1},
+                               {},
+                               worker.is_ready(world.resource<SecondOrder>().statics),
+                               [&] { worker.await(); }});
         played.step_ms.push_back(1e-3 * report.took_us);
         played.ages.push_back(report.relaxed->model_age.value_or(0));
         if (way >= next_place) {
             next_place += spacing_angstrom;
             played.places.push_back({world.resource<TorsionState>(), pN * find_force(world)});
         }
+        SecondOrder& second = world.write<SecondOrder>();
         worker.start_if_pending(model_of(world), second.settings, second.statics);
         const Clock::time_point now = Clock::now();
         played.missed += now > due ? 1 : 0;
