@@ -64,7 +64,7 @@ struct ReplayState {
     LiveSettings settings;  // as the person had them
 };
 
-// What can be undone and redone, by name; empty: nothing.
+// The names of the changes that undo and redo would take next; empty: there is none.
 struct UndoReadout {
     std::string undo, redo;
     std::size_t dropped = 0;  // number of oldest entries that were dropped for lack of room

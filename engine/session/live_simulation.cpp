@@ -339,7 +339,7 @@ void LiveSimulation::note_pulls() {
         history_.note_pull(std::exchange(since->before, {}),
                            world_.find<Molecule>(grip.molecule)->name);
         since->is_noted = true;
-        // What other hands begin later is later in the history as well.
+        // Other hands that have not pulled yet begin anew, so that the history stays in order.
         for (std::size_t other = 0; other < held_since_.size(); ++other) {
             if (held_since_[other] && !held_since_[other]->is_noted) held_since_[other].reset();
         }

@@ -15,7 +15,7 @@
 
 namespace palpa {
 
-// What a person chose beside the world.
+// A person's choices that are not part of the world.
 struct PersonChoices {
     LiveSettings settings;
     ViewAdditions additions;
@@ -54,7 +54,7 @@ public:
     // The names of what undo and redo would change next; empty: nothing.
     std::string undo_name() const { return undo_.empty() ? "" : undo_.back().name; }
     std::string redo_name() const { return redo_.empty() ? "" : redo_.back().name; }
-    // What the last undo or redo restored, or the last edit changed.
+    // The part that the last undo or redo restored, or the last edit changed.
     enum class Part { World, Settings, Additions };
     Part last_part() const noexcept { return last_part_; }
     // True if the last edit, undo or redo changed the coupling of the world.

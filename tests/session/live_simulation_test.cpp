@@ -179,7 +179,7 @@ TEST_CASE("a pull lasts from taking hold to letting go", "[session][undo]") {
         live.step(0);
         at.push_back(live.positions());
     }
-    // What moves while nobody leads the hand is no pull, nor is a lead that moves nothing.
+    // A motion while nobody leads the hand is no pull, nor is a lead that moves nothing.
     live.step(2e-3);
     live.step(-2e-3);
     live.play(CommandEvent{HandLead{0, true}});
@@ -292,7 +292,7 @@ TEST_CASE("at its limit the history says what it forgets", "[session][undo]") {
     live.play(CommandEvent{ViewAdditions{}});
     CHECK(live.simulation.readout().undo.dropped == 1);
     CHECK(live.simulation.readout().undo.dropped_name == "measurement");
-    // What can no longer be undone stays among the edits of the session.
+    // An edit that can no longer be undone stays among those of the session.
     CHECK(live.simulation.list_edits().size() == 1);
 }
 

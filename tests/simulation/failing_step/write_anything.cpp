@@ -29,7 +29,7 @@ constexpr Write writes[] = {
         const std::size_t atom = random() % atoms.size();
         atoms.positions[atom] += Vec3::Ones();
         atoms.charge.write()[atom] += 1;
-        atoms.names.write()[atom].residue = "XXX";
+        atoms.names.write()[atom].residue = "ALA";
     },
     [](World& world, std::mt19937& random) {
         TorsionState& state = world.write<TorsionState>();
