@@ -280,17 +280,18 @@ bool LiveSimulation::has_renewal() {
 void LiveSimulation::edit(const EditDescription& edit, bool settles) {
     renewals_.await();
     PersonChoices chosen = choices();
+    UndoHistory::Part part{};
     try {
-        history_.apply(world_, edit, chosen);
+        part = history_.apply(world_, edit, chosen);
     } catch (const LoadError& error) {
         return refuse(edit, error.what());
     }
-    if (history_.last_part() == UndoHistory::Part::World) {
+    if (part == UndoHistory::Part::World) {
         held_since_.clear();
         return publish_edit(settles);
     }
     additions_ = chosen.additions;
-    if (history_.last_part() == UndoHistory::Part::Settings) set(chosen.settings);
+    if (part == UndoHistory::Part::Settings) set(chosen.settings);
     ++readout_.undo.restored;
     publish_history();
 }

@@ -78,7 +78,8 @@ std::string name_of(const EditDescription& edit) {
     return std::visit(visit, edit.action);
 }
 
-void UndoHistory::apply(World& world, const EditDescription& edit, PersonChoices& choices) {
+UndoHistory::Part UndoHistory::apply(World& world, const EditDescription& edit,
+                                     PersonChoices& choices) {
     const bool undoes = std::holds_alternative<UndoEdit>(edit.action);
     if (undoes || std::holds_alternative<RedoEdit>(edit.action)) {
         std::deque<Entry>&from = undoes ? undo_ : redo_, &to = undoes ? redo_ : undo_;
@@ -90,6 +91,7 @@ void UndoHistory::apply(World& world, const EditDescription& edit, PersonChoices
     World changed = make_edit(world, edit);
     std::swap(world, changed);
     note_edit(std::move(changed), edit);
+    return Part::World;
 }
 
 void UndoHistory::apply(World& world, const EditDescription& edit) {
@@ -108,7 +110,6 @@ void UndoHistory::note_edit(World before, const EditDescription& edit) {
     entry.is_of_coupling = std::holds_alternative<CouplingEdit>(edit.action) ||
                            std::holds_alternative<ResetEdit>(edit.action);
     has_changed_coupling_ = entry.is_of_coupling;
-    last_part_ = Part::World;
     const bool takes = std::holds_alternative<TakeEdit>(edit.action);
     const bool lets_go = std::holds_alternative<LetGoEdit>(edit.action);
     if (takes || lets_go) {
@@ -178,25 +179,26 @@ std::vector<EditDescription> UndoHistory::list_edits() const {
     return edits;
 }
 
-void UndoHistory::go(World& world, PersonChoices& choices, std::deque<Entry>& from,
-                     std::deque<Entry>& to) {
+UndoHistory::Part UndoHistory::go(World& world, PersonChoices& choices, std::deque<Entry>& from,
+                                  std::deque<Entry>& to) {
+    Part part = Part::World;
     Entry entry = std::move(from.back());
     from.pop_back();
     entry.slid.clear();
     has_changed_coupling_ = entry.is_of_coupling;
     if (auto* const before = std::get_if<World>(&entry.before)) {
-        last_part_ = Part::World;
         *before = continue_with(world, std::move(*before));
         std::swap(world, *before);
     } else if (auto* const settings = std::get_if<LiveSettings>(&entry.before)) {
-        last_part_ = Part::Settings;
+        part = Part::Settings;
         std::swap(*settings, choices.settings);
     } else {
-        last_part_ = Part::Additions;
+        part = Part::Additions;
         std::swap(std::get<ViewAdditions>(entry.before), choices.additions);
     }
     to.push_back(std::move(entry));
     limit();
+    return part;
 }
 
 void UndoHistory::limit() {

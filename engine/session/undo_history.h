@@ -26,9 +26,11 @@ public:
     static constexpr std::size_t most_entries = 200;
     static constexpr std::size_t most_bytes = std::size_t{256} << 20;  // total memory
 
+    // The part that an edit has changed, or that undo or redo has restored.
+    enum class Part { World, Settings, Additions };
     // Carries out an edit of any kind, including undo and redo. Throws LoadError at the edit's
     // place. Undo and redo restore the choices that they find in the history.
-    void apply(World& world, const EditDescription& edit, PersonChoices& choices);
+    Part apply(World& world, const EditDescription& edit, PersonChoices& choices);
     // For a history of edits alone.
     void apply(World& world, const EditDescription& edit);
     // Replaces the world by the result of make_edit on an earlier state; the clock continues, and
@@ -49,14 +51,9 @@ public:
     // The edits since the world's start that are not undone, in order; a release follows its grip.
     std::vector<EditDescription> list_edits() const;
 
-    bool can_undo() const noexcept { return !undo_.empty(); }
-    bool can_redo() const noexcept { return !redo_.empty(); }
     // The names of what undo and redo would change next; empty: nothing.
     std::string undo_name() const { return undo_.empty() ? "" : undo_.back().name; }
     std::string redo_name() const { return redo_.empty() ? "" : redo_.back().name; }
-    // The part that the last undo or redo restored, or the last edit changed.
-    enum class Part { World, Settings, Additions };
-    Part last_part() const noexcept { return last_part_; }
     // True if the last edit, undo or redo changed the coupling of the world.
     bool has_changed_coupling() const noexcept { return has_changed_coupling_; }
     // The number of oldest entries that were dropped to limit the size, and the last one's name.
@@ -78,7 +75,7 @@ private:
 
     void note_edit(World before, const EditDescription& edit);
     void note(Entry entry);
-    void go(World& world, PersonChoices& choices, std::deque<Entry>& from, std::deque<Entry>& to);
+    Part go(World& world, PersonChoices& choices, std::deque<Entry>& from, std::deque<Entry>& to);
     void limit();
     std::size_t count_bytes() const;
 
@@ -86,7 +83,6 @@ private:
     std::vector<EditDescription> dropped_edits_;
     std::size_t dropped_ = 0;
     std::string dropped_name_;
-    Part last_part_ = Part::World;
     bool has_changed_coupling_ = false;
 };
 

@@ -23,29 +23,16 @@ void keep_history(const AdaptiveStatics& from, AdaptiveStatics& to) {
 
 AdaptiveState AdaptiveState::without_caches() const {
     AdaptiveState kept;
-    kept.settings = settings;
+    static_cast<AdaptivePlan&>(kept) = *this;
     keep_history(statics, kept.statics);
-    kept.budget = budget;
-    kept.accuracy = accuracy;
-    kept.rendered = rendered;
-    kept.choose_every = choose_every;
-    kept.mobility_weights = mobility_weights;
-    kept.weighs_hand_proximity = weighs_hand_proximity;
-    kept.near_to = near_to;
     kept.lacks_caches = true;
     return kept;
 }
 
 SecondOrder SecondOrder::without_caches() const {
     SecondOrder kept;
-    kept.settings = settings;
+    static_cast<SecondOrderPlan&>(kept) = *this;
     kept.statics.renewals.lineariser.held = statics.renewals.lineariser.held;
-    kept.hands = hands;
-    kept.delay_s = delay_s;
-    kept.due = due;
-    kept.most_evaluations = most_evaluations;
-    kept.evaluation_us = evaluation_us;
-    kept.snap = snap;
     kept.lacks_caches = true;
     return kept;
 }

@@ -147,10 +147,9 @@ struct Ball {
     double radius;
 };
 
-// If not everything is active at a time, or the scene sets an accuracy.
-struct AdaptiveState {
+// The part of an AdaptiveState that cannot be rebuilt from the world.
+struct AdaptivePlan {
     AdaptiveSettings settings;
-    AdaptiveStatics statics;
     std::optional<TimeBudget> budget;
     // If the scene sets an accuracy: the controller of the work.
     std::optional<AccuracyController> accuracy;
@@ -163,6 +162,11 @@ struct AdaptiveState {
     std::vector<double> mobility_weights;
     bool weighs_hand_proximity = false;
     std::vector<Ball> near_to;  // region around each hand
+};
+
+// If not everything is active at a time, or the scene sets an accuracy.
+struct AdaptiveState : AdaptivePlan {
+    AdaptiveStatics statics;
     std::size_t copied = 0;     // number of cluster rebuilds at the last full copy of positions
     bool lacks_caches = false;  // all of `statics` but its step length, guides and counters
 
@@ -187,10 +191,9 @@ struct ErrorEstimate {
 // A renewal that releases more energy than this (kcal/mol) is a snap: a minimum had vanished.
 inline constexpr double least_snap = 1;
 
-// State of second-order steps.
-struct SecondOrder {
+// The part of a SecondOrder that cannot be rebuilt from the world.
+struct SecondOrderPlan {
     SecondOrderSettings settings;
-    SecondOrderStatics statics;
     std::vector<Entity> hands;  // in the order of the statics
 
     // Delay until a pending renewal is used: a declared time, or until the step's input says so.
@@ -211,6 +214,11 @@ struct SecondOrder {
         std::uint64_t step = 0;
     };
     std::optional<Snap> snap;
+};
+
+// State of second-order steps.
+struct SecondOrder : SecondOrderPlan {
+    SecondOrderStatics statics;
     bool lacks_caches = false;  // all of `statics` but what hands hold
 
     // Another thread may be making the pending renewal meanwhile.

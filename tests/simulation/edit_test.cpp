@@ -382,7 +382,7 @@ TEST_CASE("what files lack is refused by name, and nothing changes", "[simulatio
 
     for (const std::string& what : row.what) CHECK_THAT(error, Contains(what));
     CHECK(world_bytes(world) == before);
-    CHECK_FALSE(history.can_undo());
+    CHECK(history.undo_name().empty());
     add_molecule(world, {"", "", "new", {0, 0, 50}, in_folder("whole.crd")});
     CHECK(world.resource<AtomTable>().size() == 9);
 }
@@ -437,7 +437,7 @@ TEST_CASE("an edit that cannot be made leaves everything as it was, and says why
 
     CHECK_THAT(error, Catch::StartsWith("scene.toml:7: ") && Contains(row.what));
     CHECK(world_bytes(world) == before);
-    CHECK_FALSE(history.can_undo());
+    CHECK(history.undo_name().empty());
 }
 
 TEST_CASE("undo and redo lead back through random edits and moves, to the byte",
@@ -486,12 +486,12 @@ TEST_CASE("undo and redo lead back through random edits and moves, to the byte",
         history.apply(world, edit_of(UndoEdit{}));
         REQUIRE(world_bytes(world) == states[i - 1]);
     }
-    CHECK_FALSE(history.can_undo());
+    CHECK(history.undo_name().empty());
     for (std::size_t i = 1; i < states.size(); ++i) {
         history.apply(world, edit_of(RedoEdit{}));
     }
     CHECK(world_bytes(world) == states.back());
-    CHECK_FALSE(history.can_redo());
+    CHECK(history.redo_name().empty());
 }
 
 TEST_CASE("nothing is added on top of what is there, and the message says where that is",
@@ -560,7 +560,7 @@ TEST_CASE("what a scene began with is let go, and that is undone", "[simulation]
     history.apply(world, edit_of(TakeEdit{"resting:2"}));
     history.apply(world, edit_of(UndoEdit{}));
     history.apply(world, edit_of(LetGoEdit{}));
-    CHECK_FALSE(history.can_redo());
+    CHECK(history.redo_name().empty());
 }
 
 TEST_CASE("two hands at one molecule leave it as it was, whichever lets go first",
@@ -646,7 +646,7 @@ TEST_CASE("only so many entries are kept, and the oldest go first", "[simulation
         history.apply(world, edit_of(AppearanceEdit{"fixed", {}, {}, i % 2 == 0}));
     CHECK(history.dropped() == 5);
     std::size_t undone = 0;
-    for (; history.can_undo(); ++undone) history.apply(world, edit_of(UndoEdit{}));
+    for (; !history.undo_name().empty(); ++undone) history.apply(world, edit_of(UndoEdit{}));
     CHECK(undone == UndoHistory::most_entries);
 }
 
