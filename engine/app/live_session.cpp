@@ -361,16 +361,21 @@ void LiveSession::run_simulation() {
                     device_change_.reset();
                     device_changed_.notify_one();
                 }
-                if (question_) {
-                    (*question_)();
-                    question_ = nullptr;
-                    answered_.notify_one();
-                }
             }
             for (const Command& command : commands) obey(command);
+            answer();
             if (!commands.empty()) post_frame_if_wanted();
         }
     }
+}
+
+// After the commands that were sent before the question.
+void LiveSession::answer() {
+    const std::lock_guard lock(mutex_);
+    if (!question_ || !commands_.empty()) return;
+    (*question_)();
+    question_ = nullptr;
+    answered_.notify_one();
 }
 
 void LiveSession::play(const LiveEvent& event) {

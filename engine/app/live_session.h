@@ -100,6 +100,7 @@ private:
     void adopt_edit();
     // Calls a function on the simulation's thread between two steps, and waits for it.
     void ask(const std::function<void()>& question);
+    void answer();
     void serve_clients(bool is_before_step);
     void change_device(const DeviceEvent& change, const LiveDevice& device);
     void post_frame_if_wanted();

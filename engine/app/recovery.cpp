@@ -2,10 +2,10 @@
 
 #include "app/preferences.h"
 #include "core/files.h"
-#include "core/load_error.h"
 #include "core/text.h"
 #include "platform/program.h"
-#include "scene/write_scene.h"
+#include "session/save_scene.h"
+#include "simulation/resources.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -56,20 +56,16 @@ void RecoveryFile::forget() noexcept {
     file_.reset();
 }
 
-void RecoveryFile::save(const SceneDescription& scene) noexcept {
+void RecoveryFile::save(const World& world, const ViewDescription& view) noexcept {
     if (!folder_) return;
     try {
         fs::create_directories(*folder_);
+        const fs::path scene = world.resource<ScenePlaces>().file;
         const fs::path file =
-            *folder_ / fmt::format("{}-{}.toml", scene.file.parent_path().filename().string(),
+            *folder_ / fmt::format("{}-{}.toml", scene.parent_path().filename().string(),
                                    own_process_number());
-        const auto whole = [](const fs::path& named) {
-            return fs::absolute(named).lexically_normal().generic_string();
-        };
-        write_text_file(
-            file,
-            "# A backup in case the program ends unexpectedly.\n" + format_scene(scene, whole),
-            Existing::Replace);
+        save_scene(world, view, file, "A backup in case the program ends unexpectedly.",
+                   Existing::Replace);
         file_ = file;
     } catch (const std::exception&) {  // a full disk may have room the next time
         return;
@@ -78,7 +74,7 @@ void RecoveryFile::save(const SceneDescription& scene) noexcept {
 
 void forget_recovered(const fs::path& file) noexcept {
     std::error_code error;
-    fs::remove(file, error);
+    for (const fs::path& saved : list_scene_files(file)) fs::remove(saved, error);
 }
 
 std::vector<fs::path> list_recovered() {

@@ -1,5 +1,6 @@
 // Saves unsaved changes from time to time, in case the program ends unexpectedly.
 #pragma once
+#include "ecs/world.h"
 #include "scene/description.h"
 
 #include <filesystem>
@@ -14,7 +15,7 @@ class RecoveryFile {
 public:
     RecoveryFile();
 
-    void save(const SceneDescription& scene) noexcept;
+    void save(const World& world, const ViewDescription& view) noexcept;
     // Deletes the file, after the person saved or discarded the changes.
     void forget() noexcept;
 
@@ -25,10 +26,10 @@ private:
 // Recovery files of programs that no longer run, newest first; they can be opened as scenes.
 std::vector<std::filesystem::path> list_recovered();
 
-// Whether the file is a recovery file. It names other files by their full paths.
+// Whether the file is a recovery file.
 bool is_recovered(const std::filesystem::path& file);
 
-// Removes it.
+// Removes it, with its atoms.
 void forget_recovered(const std::filesystem::path& file) noexcept;
 
 }  // namespace palpa

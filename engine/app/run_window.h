@@ -55,13 +55,6 @@ struct SoundChoice {
     std::function<void(bool)> remember{};  // saves the person's choice; throws LoadError
 };
 
-// Changes of the scene by the person.
-struct SceneState {
-    LiveSettings settings;
-    ViewDescription view;
-    std::vector<EditDescription> edits{};  // all edits since the start of the scene
-};
-
 struct WindowOptions {
     ViewSettings view{};
     std::filesystem::path screenshots{"."};  // folder
@@ -86,11 +79,11 @@ struct WindowOptions {
     // were.
     bool is_hand_explained = false;
     std::function<void()> remember_hand_explained{};
-    // Saves the scene with these settings, view and edits, and returns where; throws LoadError.
-    // Empty: saving is not possible.
-    std::function<std::string(const SceneState&)> save{};
+    // Saves the world with this view as a scene, and returns where; throws LoadError. Empty: saving
+    // is not possible.
+    std::function<std::string(const World&, const ViewDescription&)> save{};
     // The same for crash recovery, without a message. Empty: not done.
-    std::function<void(const SceneState&)> save_for_crash{};
+    std::function<void(const World&, const ViewDescription&)> save_for_crash{};
     std::string notice{};           // shown at the start
     FrameServer* server = nullptr;  // used by the simulation's thread meanwhile
     double most_frames_per_s = 60;

@@ -92,7 +92,6 @@ private:
     void fly();
     bool is_saved() const;
     std::vector<EditAction> list_lasting_edits() const;
-    SceneState describe_state() const;
     void save_for_crash();
     void note_saved();
     template <typename Value>

@@ -53,7 +53,7 @@ void Sandbox::choose_next(Value ViewSettings::* choice, std::size_t count, const
 bool Sandbox::save_scene() {
     if (refuse_in_replay() || !options_.save) return false;
     try {
-        const std::string file = options_.save(describe_state());
+        const std::string file = options_.save(session_.copy_world(), describe_view());
         note_saved();
         notice(format_translated("saved {}", file), first_notice_s);
         return true;

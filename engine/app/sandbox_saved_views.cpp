@@ -139,21 +139,12 @@ std::vector<EditAction> Sandbox::list_lasting_edits() const {
     return actions;
 }
 
-SceneState Sandbox::describe_state() const {
-    SceneState state{overlay_.settings(), describe_view()};
-    if (frame_.edits) state.edits = *frame_.edits;
-    std::erase_if(state.edits, [](const EditDescription& edit) {
-        return std::holds_alternative<CouplingEdit>(edit.action);
-    });
-    return state;
-}
-
 // Now and then, so that a crash loses little.
 void Sandbox::save_for_crash() {
     constexpr std::chrono::seconds between{20};
     if (!options_.save_for_crash || !has_frame_ || SteadyClock::now() < next_crash_save_) return;
     next_crash_save_ = SteadyClock::now() + between;
-    if (!is_saved()) options_.save_for_crash(describe_state());
+    if (!is_saved()) options_.save_for_crash(session_.copy_world(), describe_view());
 }
 
 void Sandbox::note_saved() {

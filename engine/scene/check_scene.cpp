@@ -86,6 +86,15 @@ void check_start(const HandTables& by, bool along_x, Problems& problems) {
     }
 }
 
+void check_released(const HandTables& by, Problems& problems) {
+    const std::optional<Motion> released = by.grab.released;
+    if (!released || *released == Motion::Fixed || *released == Motion::Free) return;
+    const std::string key = by.grab_key + ".released";
+    problems.add(problems.place_of(key),
+                 fmt::format("'{}' is \"{}\", which needs a hand; expected fixed or free", key,
+                             name_of(*released)));
+}
+
 // What the hand holds; null where a problem is reported.
 const MoleculeDescription* check_hold(const SceneDescription& scene, const HandTables& by,
                                       Problems& problems) {
@@ -100,6 +109,7 @@ const MoleculeDescription* check_hold(const SceneDescription& scene, const HandT
     }
     const MoleculeDescription* const grabbed =
         find_named(scene, problems, by.grab_key + ".molecule", by.grab.molecule);
+    check_released(by, problems);
     if (scene.engine) return grabbed;  // which moves everything
     if (!grabbed || !check_grabbed(scene, by, *grabbed, problems)) return nullptr;
     check_start(by, grabbed->motion == Motion::AlongX, problems);
@@ -126,7 +136,8 @@ void check_motions(const SceneDescription& scene,
                                      "themselves; expected translate or translate-and-turn",
                                      key));
         }
-        if (molecule.motion == Motion::WithHandle && scene.has_statics()) {
+        if (molecule.motion == Motion::WithHandle && scene.has_statics() &&
+            scene.statics.relaxes_start) {
             problems.add(
                 problems.place_of(key),
                 fmt::format(
@@ -152,6 +163,14 @@ void check_grab(const SceneDescription& scene, Problems& problems) {
                      "'joints.within_angstrom' and 'joints.region_angstrom' are both given; "
                      "expected one of them");
     }
+}
+
+void check_ends(const RestraintEdit& restraint, const std::string& key, Problems& problems) {
+    const std::size_t ends = restraint.atoms.size() + (restraint.place_angstrom ? 1 : 0);
+    if (restraint.atoms.empty() || ends == 2) return;  // without atoms it is reported already
+    problems.add(
+        problems.place_of(key),
+        fmt::format("'{}' has {} ends; expected two atoms, or one and place_angstrom", key, ends));
 }
 
 // As the system reads numbers: fewer than four parts are one too.
@@ -251,15 +270,8 @@ void check_edit(const EditDescription& edit, bool has_second, const std::string&
     }
     const EditAction& action = edit.action;
     const std::string key = path + std::string(edit_names[action.index()]);
-    if (const auto* const restraint = std::get_if<RestraintEdit>(&action)) {
-        const std::size_t ends = restraint->atoms.size() + (restraint->place_angstrom ? 1 : 0);
-        if (!restraint->atoms.empty() && ends != 2) {
-            problems.add(problems.place_of(key),
-                         fmt::format("'{}' has {} ends; expected two atoms, or one and "
-                                     "place_angstrom",
-                                     key, ends));
-        }
-    }
+    if (const auto* const restraint = std::get_if<RestraintEdit>(&action))
+        check_ends(*restraint, key, problems);
     const auto* const mobility = std::get_if<MobilityEdit>(&action);
     if (mobility && !mobility->motion && !mobility->shape) {
         problems.add(problems.place_of(key),
@@ -285,6 +297,12 @@ void check_hand(const HandTables& by, bool is_remote, Problems& problems) {
     check(h.stroke != Stroke::InOut || !is_remote, stroke,
           "is \"in-out\", which does not work with a remote engine ([engine]); expected \"hold\", "
           "\"path\" or \"lead\"");
+    check(
+        !by.grab.place_angstrom || !by.grab.atom.empty() || is_remote,
+        by.grab_key + ".place_angstrom",
+        fmt::format("is the end of a spring, but the hand holds '{}' as a whole; expected {}.atom "
+                    "as well",
+                    by.grab.molecule, by.grab_key));
     check(h.stroke != Stroke::InOut || h.grip != HandGrip::None, stroke,
           "is \"in-out\", but with the grip \"none\" nobody moves the handle; expected \"hold\", "
           "or another grip");
@@ -378,6 +396,8 @@ void check_ranges(const SceneDescription& scene, Problems& problems) {
                       "cutoffs of its own (9 and 9.5 Å); expected no cutoff, or solvent = \"none\"",
                       scene.statics.cutoff_angstrom.value_or(0),
                       solvent_names[static_cast<std::size_t>(scene.force_field.solvent)]));
+    for (std::size_t i = 0; i < scene.restraints.size(); ++i)
+        check_ends(scene.restraints[i], fmt::format("restraints[{}]", i + 1), problems);
     for (const MoleculeDescription& molecule : scene.molecules) {
         const std::string anchors = fmt::format("molecules.{}.anchors", molecule.name);
         for (auto i = molecule.anchors.begin(); i != molecule.anchors.end(); ++i) {

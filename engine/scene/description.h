@@ -24,6 +24,13 @@ struct ForceFieldDescription {
     Solvent solvent = Solvent::None;
 };
 
+// How a molecule is drawn, if different from everything else.
+struct Appearance {
+    std::optional<Representation> representation;
+    std::optional<Colouring> colouring;
+    bool visible = true;
+};
+
 struct MoleculeDescription {
     std::string name;
     std::filesystem::path structure;
@@ -38,6 +45,7 @@ struct MoleculeDescription {
     double anchor_kcal_per_mol_angstrom2 = 5;
     std::vector<std::string>
         approximate;  // residues with approximate types, charges and parameters
+    Appearance appearance{};
 };
 
 // A remote engine that moves all atoms, over IMD, in place of our own mechanics.
@@ -87,6 +95,7 @@ struct StaticsDescription {
     std::int64_t choose_every = 10;  // steps
     double rest_kcal_per_mol = 0.05;
     std::int64_t relax_steps = 4000;
+    bool relaxes_start = true;  // false: everything starts where the files have it
 };
 
 // Where no method is set: second order, but the paper's step where fewer degrees of freedom than
@@ -95,9 +104,15 @@ RelaxMethod method_of(const StaticsDescription& statics) noexcept;
 
 struct GrabDescription {
     std::string molecule;       // molecule that the hand moves
-    std::string measured_from;  // molecule from whose reference atom distances are measured
+    std::string measured_from;  // molecule from whose reference atom distances are measured; empty:
+                                // the one in the hand
     std::string atom;           // "25 CA", or a residue "25", held by a spring; empty: no spring
     double spring_kcal_per_mol_angstrom2 = 20;
+    std::optional<std::array<double, 3>>
+        place_angstrom{};  // end of the spring; unset: at the atoms
+    // Motion of the molecule after its release; unset: free where something moves by itself, else
+    // fixed, and with a spring as it is.
+    std::optional<Motion> released{};
 
     friend bool operator==(const GrabDescription&, const GrabDescription&) = default;
 };
@@ -257,6 +272,14 @@ struct ViewDescription {
     ViewMarks marks{};
 };
 
+// What is there from the start, in the form of an edit.
+struct StartRestraint : RestraintEdit {
+    TextPlace place;
+};
+struct StartPin : PinEdit {
+    TextPlace place;
+};
+
 struct SceneDescription {
     std::filesystem::path file;
     std::string format;  // version that the file states (core/file_versions.h); empty: none
@@ -267,6 +290,8 @@ struct SceneDescription {
     std::string lesson_goal;
     ForceFieldDescription force_field;
     std::vector<MoleculeDescription> molecules;  // in the order of the file
+    std::vector<StartRestraint> restraints;
+    std::vector<StartPin> pins;
     JointsDescription joints;
     StaticsDescription statics;
     std::optional<EngineDescription> engine;

@@ -10,8 +10,6 @@
 namespace palpa {
 namespace {
 
-constexpr double farthest_angstrom = 1e4;
-
 void visit_action(FieldVisitor& v, TakeEdit& e) {
     v.text(
         {.key = "take",
@@ -83,28 +81,7 @@ void visit_action(FieldVisitor& v, PinEdit& e) {
 void visit_action(FieldVisitor& v, RestraintEdit& e) {
     v.enter_table(
         {.key = "restraint", .meaning = "a spring between two, or to a place", .is_inline = true});
-    v.texts({.key = "atoms",
-             .meaning = "one or two atoms or residues",
-             .lowest = 1,
-             .highest = 2,
-             .required = true,
-             .form = TextForm::ResidueOrAtom},
-            e.atoms);
-    const Field place{.key = "place_angstrom",
-                      .meaning = "place to which the atom is pulled, Å",
-                      .lowest = -farthest_angstrom,
-                      .highest = farthest_angstrom};
-    if (v.is_there(place, e.place_angstrom.has_value())) {
-        if (!e.place_angstrom) e.place_angstrom.emplace();
-        v.triple(place, *e.place_angstrom);
-    }
-    v.real({.key = "k_kcal_per_mol_angstrom2",
-            .meaning = "stiffness, E = k x²/2",
-            .lowest = 1e-3,
-            .highest = 1e4},
-           e.k_kcal_per_mol_angstrom2);
-    v.real({.key = "length_angstrom", .meaning = "length at rest", .lowest = 0, .highest = 1e3},
-           e.length_angstrom);
+    visit_restraint(v, e);
     v.leave_table();
 }
 
@@ -177,6 +154,42 @@ void visit_edit(FieldVisitor& v, EditDescription& edit) {
 }
 
 }  // namespace
+
+void visit_restraint(FieldVisitor& v, RestraintEdit& e) {
+    v.texts({.key = "atoms",
+             .meaning = "one or two atoms or residues",
+             .lowest = 1,
+             .highest = 2,
+             .required = true,
+             .form = TextForm::ResidueOrAtom},
+            e.atoms);
+    const Field place{.key = "place_angstrom",
+                      .meaning = "place to which the atom is pulled, Å",
+                      .lowest = -farthest_angstrom,
+                      .highest = farthest_angstrom};
+    if (v.is_there(place, e.place_angstrom.has_value())) {
+        if (!e.place_angstrom) e.place_angstrom.emplace();
+        v.triple(place, *e.place_angstrom);
+    }
+    v.real({.key = "k_kcal_per_mol_angstrom2",
+            .meaning = "stiffness, E = k x²/2",
+            .lowest = 1e-3,
+            .highest = 1e4},
+           e.k_kcal_per_mol_angstrom2);
+    v.real({.key = "length_angstrom", .meaning = "length at rest", .lowest = 0, .highest = 1e3},
+           e.length_angstrom);
+}
+
+void visit_look(FieldVisitor& v, Appearance& a) {
+    choose_if_set(v,
+                  {.key = "representation",
+                   .meaning = "how it is drawn, as in [view]; unset: as everything else"},
+                  representation_names, a.representation);
+    choose_if_set(
+        v, {.key = "colour", .meaning = "its colours, as in [view]; unset: as everything else"},
+        colouring_names, a.colouring);
+    v.flag({.key = "visible", .meaning = "whether it is drawn"}, a.visible);
+}
 
 void visit_edit_action(FieldVisitor& v, std::size_t index, EditAction& action) {
     if (index != action.index())

@@ -1,4 +1,4 @@
-// The fields of [[edits]], a part of the list of scene/fields.h.
+// The fields of [[edits]] and of what is like them, a part of the list of scene/fields.h.
 #pragma once
 #include "scene/fields.h"
 
@@ -6,6 +6,11 @@
 #include <vector>
 
 namespace palpa {
+
+inline constexpr double farthest_angstrom = 1e4;  // of a place from the origin
+
+void visit_restraint(FieldVisitor& visitor, RestraintEdit& restraint);
+void visit_look(FieldVisitor& visitor, Appearance& appearance);
 
 void visit_edits(FieldVisitor& visitor, std::vector<EditDescription>& edits);
 

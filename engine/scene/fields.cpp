@@ -88,7 +88,28 @@ void visit_molecule(FieldVisitor& v, MoleculeDescription& m, bool is_remote) {
              .meaning = "residues with approximate types, charges and parameters (`palpa prepare "
                         "--approximate-ligands`), which the window lists"},
             m.approximate);
+    visit_look(v, m.appearance);
     v.leave_table();
+}
+
+void visit_restraints(FieldVisitor& v, std::vector<StartRestraint>& restraints) {
+    visit_entries(v,
+                  {.key = "restraints",
+                   .meaning = "springs between two atoms or residues, or from one to a place"},
+                  restraints, [&](StartRestraint& r) { visit_restraint(v, r); });
+}
+
+void visit_pins(FieldVisitor& v, std::vector<StartPin>& pins) {
+    visit_entries(v, {.key = "pins", .meaning = "atoms that are marked"}, pins, [&](StartPin& p) {
+        v.texts({.key = "atoms",
+                 .meaning = "one atom for a label, two for a distance, three for an angle, four "
+                            "for a dihedral",
+                 .lowest = 1,
+                 .highest = 4,
+                 .required = true,
+                 .form = TextForm::Atom},
+                p.atoms);
+    });
 }
 
 void visit_molecules(FieldVisitor& v, std::vector<MoleculeDescription>& molecules, bool is_remote) {
@@ -111,9 +132,10 @@ void visit_grab(FieldVisitor& v, const Field& table, GrabDescription& g, bool is
             .required = true},
            g.molecule);
     v.text({.key = "measured_from",
-            .meaning = "name of the molecule to whose reference atom distances are measured; unset "
-                       "with [engine]: the one in the hand",
-            .required = !is_remote},
+            .meaning = "name of the molecule to whose reference atom distances are measured; "
+                       "\"\", or unset with [engine]: the one in the hand",
+            .required = !is_remote,
+            .may_be_empty = true},
            g.measured_from);
     v.text({.key = "atom",
             .meaning = "part of that molecule that the hand pulls by a spring: an atom (\"25 "
@@ -125,6 +147,22 @@ void visit_grab(FieldVisitor& v, const Field& table, GrabDescription& g, bool is
             .lowest = 1e-3,
             .highest = 1e4},
            g.spring_kcal_per_mol_angstrom2);
+    const Field place{.key = "place_angstrom",
+                      .meaning =
+                          "place of the hand's end of that spring at the start, Å; unset: "
+                          "where the part is that it pulls",
+                      .lowest = -farthest_angstrom,
+                      .highest = farthest_angstrom};
+    if (v.is_there(place, g.place_angstrom.has_value())) {
+        if (!g.place_angstrom) g.place_angstrom.emplace();
+        v.triple(place, *g.place_angstrom);
+    }
+    choose_if_set(v,
+                  {.key = "released",
+                   .meaning = "motion of the molecule after the hand has released it: fixed or "
+                              "free; unset: by a spring as before, as a whole free where something "
+                              "moves by itself, else fixed"},
+                  motion_names, g.released);
     v.leave_table();
 }
 
@@ -541,6 +579,8 @@ void visit_scene(FieldVisitor& v, SceneDescription& scene) {
     const bool is_remote = scene.engine && !v.is_listing();
     visit_force_field(v, scene.force_field, !is_remote);
     visit_molecules(v, scene.molecules, is_remote);
+    visit_restraints(v, scene.restraints);
+    visit_pins(v, scene.pins);
     visit_joints(v, scene.joints);
     visit_statics(v, scene.statics);
     visit_grab(v, {.key = "grab", .meaning = "what the hand holds", .required = true}, scene.grab,

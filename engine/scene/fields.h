@@ -24,6 +24,7 @@ struct Field {
     double lowest = 0, highest = 0;  // range of a number; a test checks that every number has one
     bool zero = false;               // 0 is allowed, below `lowest`
     bool required = false;
+    bool may_be_empty = false;  // a required text
     TextForm form = TextForm::Any;
     bool is_inline = false;      // a table in braces
     std::string_view like = {};  // a table with the keys of that one, which is documented

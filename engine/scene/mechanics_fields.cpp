@@ -137,6 +137,10 @@ void visit_statics(FieldVisitor& v, StaticsDescription& s) {
                .lowest = 0,
                .highest = 1e6},
               s.relax_steps);
+    v.flag({.key = "relaxes_start",
+            .meaning = "whether loading relaxes the scene and brings a rigid molecule in the hand "
+                       "to rest; false in saved scenes: everything starts where the files have it"},
+           s.relaxes_start);
     v.leave_table();
 }
 

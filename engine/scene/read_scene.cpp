@@ -332,7 +332,7 @@ public:
         const toml::node* const node = find_value(field);
         if (!node) return;
         if (!node->is_string()) return problem(*node, expected(field, *node, "text in quotes"));
-        if (field.required && node->ref<std::string>().empty()) {
+        if (field.required && !field.may_be_empty && node->ref<std::string>().empty()) {
             return problem(*node, expected(field, *node, "text that is not empty"));
         }
         if (!has_form(node->ref<std::string>(), field.form)) {

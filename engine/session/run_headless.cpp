@@ -281,7 +281,7 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Worl
         warnings.push_back(fmt::format("atoms overlap at the start: {}", *closest));
     }
     const std::optional<JointRelaxReport>& relaxed = world.resource<StartReport>().joints_at_rest;
-    if (relaxed && relaxed->end != RelaxEnd::Converged) {
+    if (scene.statics.relaxes_start && relaxed && relaxed->end != RelaxEnd::Converged) {
         warnings.push_back(fmt::format(
             "the molecules are not at rest at the start: an rms force of {:.3g} kcal/mol per "
             "radian and Å remains after {} steps; raise statics.relax_steps or run palpa relax",

@@ -44,7 +44,7 @@ Json read_hand(const World& world, Entity hand, const ServoTick& tick) {
 }
 
 // Of an address, of which the molecule is there, or of a selection.
-std::vector<std::uint32_t> find_atoms(const World& world, const std::string& text) {
+std::vector<std::uint32_t> list_named_atoms(const World& world, const std::string& text) {
     std::vector<std::uint32_t> atoms;
     const std::optional<Address> address = find_address(text);
     if (const Entity molecule = address ? molecule_called(world, address->molecule) : Entity{};
@@ -62,7 +62,7 @@ std::vector<std::uint32_t> find_atoms(const World& world, const std::string& tex
 
 // How many they are, and where, by mass and one by one.
 void add_atoms(const World& world, const std::string& text, Json& json) {
-    const std::vector<std::uint32_t> atoms = find_atoms(world, text);
+    const std::vector<std::uint32_t> atoms = list_named_atoms(world, text);
     const AtomTable& table = world.resource<AtomTable>();
     if (atoms.empty()) throw LoadError({"read"}, fmt::format("'{}' names no atom", text));
     Vec3 sum = Vec3::Zero();

@@ -58,12 +58,7 @@ struct Mobility {
     Shape shape = Shape::Rigid;
 };
 
-// How it is drawn, if different from everything else.
-struct Appearance {
-    std::optional<Representation> representation;
-    std::optional<Colouring> colouring;
-    bool visible = true;
-};
+// How it is drawn: the Appearance of scene/description.h.
 
 // ---- of a hand ---------------------------------------------------------------------------------
 

@@ -8,6 +8,7 @@
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/molecules.h"
+#include "simulation/named_parts.h"
 #include "simulation/playback.h"
 #include "simulation/remote_engine.h"
 #include "simulation/resources.h"
@@ -30,43 +31,7 @@
 namespace palpa {
 namespace {
 
-// ---- what edits name -------------------------------------------------------------------------
-
-[[noreturn]] void refuse(const std::string& what) { throw LoadError({"edit"}, what); }
-
-Entity find_molecule(const World& world, std::string_view name) {
-    const Entity found = molecule_called(world, name);
-    if (found != Entity{}) return found;
-    std::vector<std::string> names;
-    world.each<Molecule>([&](Entity, const Molecule& molecule) { names.push_back(molecule.name); });
-    refuse(fmt::format("there is no molecule '{}'; there are {}", name, fmt::join(names, ", ")));
-}
-
-// "molecule", "molecule:25", "molecule:25 CA". No atoms: the whole molecule.
-AtomsOf find_atoms(const World& world, const std::string& address) {
-    const std::size_t colon = address.find(':');
-    AtomsOf found{find_molecule(world, address.substr(0, colon)), {}};
-    if (colon == std::string::npos) return found;
-    const std::string name = address.substr(colon + 1);
-    found.atoms = atoms_called(world, found.molecule, name);
-    if (found.atoms.empty()) {
-        refuse(
-            fmt::format("'{}' has no residue or atom \"{}\"; expected a residue's number as "
-                        "\"25\" or \"27A\", or an atom's as \"25 CA\"",
-                        address.substr(0, colon), name));
-    }
-    return found;
-}
-
-AtomsOf find_some_atoms(const World& world, const std::string& address) {
-    AtomsOf found = find_atoms(world, address);
-    if (found.atoms.empty())
-        refuse(
-            fmt::format("\"{}\" is a whole molecule; expected a residue or atom of it, such as "
-                        "\"{}:25\" or \"{}:25 CA\"",
-                        address, address, address));
-    return found;
-}
+// ---- names of molecules -----------------------------------------------------------------------
 
 void check_name_is_new(const World& world, const std::string& name) {
     if (name.empty()) refuse("the new molecule has no name; expected a name such as name = \"w2\"");
@@ -175,11 +140,6 @@ void release(World& world, Entity hand) {
     if (!held_whole) return;
     mobility = grip.before;
     free_for_spring(mobility);
-}
-
-Motion motion_in_hand(const World& world, Entity hand) {
-    if (needs_mechanics(world)) return Motion::TranslateAndTurn;
-    return world.find<Hand>(hand)->turns ? Motion::WithHandle : Motion::Translate;
 }
 
 // From what the hand measured before, or from the molecule itself.
@@ -387,27 +347,11 @@ void remove_molecule(World& world, const RemoveEdit& edit) {
     });
 }
 
-void pin(World& world, const PinEdit& edit) {
-    Mark mark;
-    for (const std::string& address : edit.atoms)
-        mark.atoms.push_back(find_some_atoms(world, address));
-    if (mark.atoms.empty() || mark.atoms.size() > 4)
-        refuse(fmt::format("{} atoms are pinned; expected 1 to 4", mark.atoms.size()));
-    world.set(world.create(), std::move(mark));
-}
+void pin(World& world, const PinEdit& edit) { world.set(world.create(), build_mark(world, edit)); }
 
 void add_restraint(World& world, const RestraintEdit& edit) {
     edit_whole(world, [&](World& changed) {
-        Spring spring;
-        for (const std::string& address : edit.atoms)
-            spring.ends.push_back(find_some_atoms(changed, address));
-        const bool has_place = edit.place_angstrom.has_value();
-        if (spring.ends.size() != (has_place ? 1 : 2))
-            refuse("a restraint is between two atoms or residues, or from one to a place");
-        if (has_place) spring.place = Vec3(edit.place_angstrom->data());
-        spring.k = edit.k_kcal_per_mol_angstrom2;
-        spring.length = edit.length_angstrom;
-        changed.set(changed.create(), std::move(spring));
+        changed.set(changed.create(), build_spring(changed, edit));
         if (!needs_mechanics(changed))
             refuse(
                 "a restraint has no effect, because no molecule moves by itself; expected a "
@@ -517,24 +461,11 @@ void make(World& world, const EditDescription& edit) {
     std::visit(visit, edit.action);
 }
 
-// What is refused names the edit's place.
-template <class Function>
-void at_place(const EditDescription& edit, const Function& function) {
-    try {
-        function();
-    } catch (const LoadError& error) {
-        std::string what = error.what();
-        constexpr std::string_view own = "edit: ";
-        if (what.starts_with(own)) what.erase(0, own.size());
-        throw LoadError(edit.place, what);
-    }
-}
-
 }  // namespace
 
 World make_edit(const World& world, const EditDescription& edit) {
     World changed = world;
-    at_place(edit, [&] { make(changed, edit); });
+    name_place(edit.place, [&] { make(changed, edit); });
     return changed;
 }
 

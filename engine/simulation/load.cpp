@@ -15,6 +15,7 @@
 #include "simulation/held.h"
 #include "simulation/mechanics.h"
 #include "simulation/molecules.h"
+#include "simulation/named_parts.h"
 #include "simulation/probe.h"
 #include "simulation/remote_engine.h"
 #include "simulation/select_in_world.h"
@@ -73,8 +74,10 @@ void add_molecule(const SceneDescription& scene, const MoleculeDescription& mole
     const AtomRange range = scene.engine ? add_engine_atoms(source, atoms)
                                          : add_segment_atoms(force_field, source, atoms);
     const std::uint32_t reference = find_reference_atom(molecule, atoms, range);
-    create_molecule(world, {molecule.name, range, reference}, {molecule.motion, molecule.shape},
-                    std::move(source));
+    const Entity entity = create_molecule(world, {molecule.name, range, reference},
+                                          {molecule.motion, molecule.shape}, std::move(source));
+    const Appearance& look = molecule.appearance;
+    if (look.representation || look.colouring || !look.visible) world.set(entity, look);
 }
 
 // Every so many steps, what relaxing has come to; nothing where nobody waits.
@@ -151,14 +154,17 @@ void start_grabbed(const SceneDescription& scene, const HandTables& tables, Enti
     const Molecule& origin = *world.find<Molecule>(grip.measured_from);
     const bool on_line = grip.freedom == 1;
     const bool is_rigid = !is_mobile(world, hand);
-    if (!on_line && is_rigid) relax_grabbed(scene, tables, hand, world);
+    if (!on_line && is_rigid && scene.statics.relaxes_start)
+        relax_grabbed(scene, tables, hand, world);
 
     grip.anchor = world.resource<AtomTable>().positions[origin.reference_atom];
     if (is_rigid) set_shape(world, grip.molecule);
     const Vec3 from_origin = held_place(world, hand) - grip.anchor;
     if (!on_line) {
         const Vec3 offset(tables.hand.start_offset_angstrom.data());
-        grip.line_origin = from_origin + Vec3(0, offset.y(), offset.z());
+        const auto& end = tables.grab.place_angstrom;
+        const Vec3 start = end ? Vec3(Vec3(end->data()) - grip.anchor) : from_origin;
+        grip.line_origin = start + Vec3(0, offset.y(), offset.z());
         move_grabbed(world, offset.x(), hand);
         grip.is_new = false;
         return;
@@ -201,6 +207,15 @@ void add_anchors(const SceneDescription& scene, const MoleculeDescription& molec
     }
 }
 
+// What acts and what is marked from the start.
+void add_restraints_and_pins(const SceneDescription& scene, World& world) {
+    for (const StartRestraint& restraint : scene.restraints)
+        name_place(restraint.place,
+                   [&] { world.set(world.create(), build_spring(world, restraint)); });
+    for (const StartPin& pin : scene.pins)
+        name_place(pin.place, [&] { world.set(world.create(), build_mark(world, pin)); });
+}
+
 // Atoms that the hand holds by a spring at first; none if it holds the molecule as a whole.
 AtomsOf find_part_at_first(const SceneDescription& scene, const HandTables& tables,
                            const World& world) {
@@ -225,6 +240,7 @@ Grip build_grip(const SceneDescription& scene, const HandTables& tables, bool is
     const Mobility& mobility = *world.find<Mobility>(grip.molecule);
     grip.before = mobility;
     if (is_whole) grip.before.motion = scene.has_statics() ? Motion::Free : Motion::Fixed;
+    if (grab.released) grip.before.motion = *grab.released;
     if (mobility.motion == Motion::AlongX && !scene.engine) return grip;
     grip.freedom = mobility.motion == Motion::WithHandle && !scene.engine ? 6 : 3;
     grip.projector = Mat3::Identity();
@@ -331,6 +347,7 @@ World load_world(const SceneDescription& scene, const StageFunction& on_stage) {
         hold_engine_atoms(world);
     }
     for (const MoleculeDescription& molecule : scene.molecules) add_anchors(scene, molecule, world);
+    add_restraints_and_pins(scene, world);
     if (needs_mechanics(world)) {
         tell(on_stage, for_translation("finding bonded terms"));
         bonded_terms(world);

@@ -598,6 +598,11 @@ bool needs_mechanics(const World& world) {
     return needs;
 }
 
+Motion motion_in_hand(const World& world, Entity hand) {
+    if (needs_mechanics(world)) return Motion::TranslateAndTurn;
+    return world.find<Hand>(hand)->turns ? Motion::WithHandle : Motion::Translate;
+}
+
 const BondedTerms& bonded_terms(World& world) {
     const BondedTerms& present = world.resource<BondedTerms>();
     if (present.topology) return present;
@@ -686,7 +691,7 @@ void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_rel
     RelaxSettings to_rest;
     to_rest.step.forces = build_settings(world).step.forces;
     to_rest.force_tolerance = s.rest_kcal_per_mol;
-    to_rest.steps = static_cast<std::size_t>(s.relax_steps);
+    to_rest.steps = s.relaxes_start ? static_cast<std::size_t>(s.relax_steps) : 0;
     StartReport& report = world.write<StartReport>();
     report.joints = plan.joints;
     report.joints_held = plan.joints_held;

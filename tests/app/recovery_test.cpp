@@ -1,9 +1,12 @@
 #include "app/recovery.h"
 
+#include "platform/program.h"
 #include "scene/read_scene.h"
+#include "simulation/load.h"
 #include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
+#include <fmt/format.h>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cstdlib>
@@ -26,13 +29,13 @@ TEST_CASE("what was not saved is offered once the program that kept it is gone",
         SceneDescription scene = read_scene(test::in_project("scenes/water"));
         scene.title = "changed";
         RecoveryFile file;
-        file.save(scene);
+        file.save(load_world(scene), scene.view);
         REQUIRE(fs::exists(recovered));
         CHECK(list_recovered().empty());  // this process still runs
 
         // As if another one had left it: no process has the highest number.
-        for (const fs::directory_entry& entry : fs::directory_iterator(recovered))
-            fs::copy_file(entry.path(), recovered / "water-2147483646.toml");
+        const fs::path own = recovered / fmt::format("water-{}.toml", own_process_number());
+        fs::copy_file(own, recovered / "water-2147483646.toml");
         REQUIRE(list_recovered() == std::vector<fs::path>{recovered / "water-2147483646.toml"});
         CHECK(is_recovered(list_recovered().front()));
         const std::vector<std::string> settings{std::string(allow_outside)};
@@ -41,7 +44,6 @@ TEST_CASE("what was not saved is offered once the program that kept it is gone",
         CHECK(read.molecules.size() == scene.molecules.size());
         // Of a running process that wrote nothing for minutes: the number is another one's now.
         fs::remove(recovered / "water-2147483646.toml");
-        const fs::path own = fs::directory_iterator(recovered)->path();
         fs::last_write_time(own, fs::file_time_type::clock::now() - std::chrono::minutes(5));
         CHECK(list_recovered() == std::vector<fs::path>{own});
         file.forget();

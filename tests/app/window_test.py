@@ -226,6 +226,18 @@ class Session(unittest.TestCase):
         self.assertEqual(self.program.returncode, 0, err)
         return json.loads(out)
 
+    def quit_once_saved(self, display):
+        """Nothing is asked as soon as what the session has undone has reached the window; until then a
+        second Escape closes the question."""
+        for _ in range(60):
+            display.do("key", "Escape")
+            try:
+                _, err = self.program.communicate(timeout=2)
+            except subprocess.TimeoutExpired:
+                continue
+            return self.assertEqual(self.program.returncode, 0, err)
+        self.fail("it asks whether to save what is saved")
+
     def test_a_session_with_mouse_and_keys(self):
         with Display() as display:
             self.start(display)
@@ -661,8 +673,7 @@ class Session(unittest.TestCase):
             display.do("key", "3")
             # A quick undo: both keys between two pictures.
             display.do("key", "ctrl+z")
-            self.screenshot(display)
-            self.quit(display)  # as saved again: nothing to ask
+            self.quit_once_saved(display)
         self.assertIn('mode = "2"', saved.read_text())
         self.assertIn('representation = "space-filling"', saved.read_text())
         self.assertIn('colour = "residue"', saved.read_text())
@@ -671,6 +682,39 @@ class Session(unittest.TestCase):
             result = subprocess.run([PROGRAM, "run", *options], capture_output=True, text=True)
             self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("mode 2", result.stdout)
+
+    @staticmethod
+    def poses_of(recording):
+        """The place of the water in hand from the other one, Å, a row each."""
+        rows = (recording / "trace.csv").read_text().splitlines()
+        first = rows[0].split(",").index("molecule_x_angstrom")
+        return [tuple(map(float, row.split(",")[first:first + 3])) for row in rows[1:]]
+
+    def test_a_pull_is_saved_and_opened_again(self):
+        scene = Path(shutil.copytree(ROOT / "scenes" / "water", self.folder / "mine"))
+        saved, before, after = (scene / "scene-2.toml", self.folder / "before", self.folder / "after")
+        with Display() as display:
+            self.start(display, "--record", before, scene=scene)
+            display.do("key", "l")
+            first = self.find_waters(display)
+            display.do("mousemove", 660, 330, "keydown", "space")
+            self.draw_until_nearer(display, first, 0.6)
+            display.do("key", "ctrl+s")
+            self.wait_until(saved.exists, "the saved scene")
+            display.do("keyup", "space")
+            self.quit(display)
+            places = {line.split()[7]: line.split()[4:7]
+                      for line in saved.with_suffix(".crd").read_text().splitlines()
+                      if " OH2 " in line}
+            pose = [float(a) - float(b) for a, b in zip(places["MOV"], places["FIX"])]
+            off = min(max(abs(a - b) for a, b in zip(pose, row)) for row in self.poses_of(before))
+            self.assertLess(off, 1e-9)
+            self.assertLess(pose[0], 0.7 * self.poses_of(before)[0][0])
+
+            self.start(display, "--record", after, scene=saved)
+            self.quit(display)
+        for a, b in zip(pose, self.poses_of(after)[0]):
+            self.assertAlmostEqual(a, b, delta=1e-9)
 
     def count_selected(self, display):
         """Pixels in the tint of what is selected, between the panels."""

@@ -3,7 +3,6 @@
 #include "app/recovery.h"
 #include "app/replay_session.h"
 #include "app/run_window.h"
-#include "app/save_scene.h"
 #include "app/window_devices.h"
 #include "core/files.h"
 #include "core/interrupt.h"
@@ -16,6 +15,7 @@
 #include "scene/find_scene.h"
 #include "scene/read_scene.h"
 #include "session/recording.h"
+#include "session/save_scene.h"
 #include "simulation/load.h"
 #include "tools/commands/kernels.h"
 #include "tools/commands/print_run.h"
@@ -115,22 +115,6 @@ void print_report(const SceneDescription& played, const WindowReport& report) {
     }
 }
 
-// The scene as a person changed it.
-SceneDescription as_set(const SceneDescription& scene, const SceneState& state) {
-    SceneDescription set = scene;
-    set.coupling = state.settings.coupling;
-    set.period_ms = state.settings.period_ms;
-    set.view = state.view;
-    // Behind the scene's own, on which they may build.
-    double last_s = 0;
-    for (const EditDescription& edit : scene.edits) last_s = std::max(last_s, edit.at_s);
-    for (EditDescription edit : state.edits) {
-        edit.at_s = std::max(edit.at_s, last_s);
-        set.edits.push_back(std::move(edit));
-    }
-    return set;
-}
-
 // The scene as it was played, by the settings that it ended with.
 SceneDescription find_played(const SceneDescription& scene, const WindowReport& report,
                              bool is_emulated) {
@@ -214,8 +198,8 @@ std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
                      options.screenshots);
     const ViewSettings first_view = first_settings(scene.view, world);
     RecoveryFile recovery;
-    const auto save = [&](const SceneState& state) {
-        std::string where = describe_saved(saver.save(as_set(scene, state)));
+    const auto save = [&](const World& now, const ViewDescription& view) {
+        std::string where = describe_saved(saver.save(now, view));
         recovery.forget();
         if (is_from_crash) forget_recovered(scene.file);
         return where;
@@ -241,7 +225,8 @@ std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
          .is_hand_explained = preferences.now().hand_explained,
          .remember_hand_explained = [&] { remember_hand_explained(preferences); },
          .save = save,
-         .save_for_crash = [&](const SceneState& state) { recovery.save(as_set(scene, state)); },
+         .save_for_crash = [&](const World& now,
+                               const ViewDescription& view) { recovery.save(now, view); },
          .notice = devices.notice(),
          .server = server.get(),
          .lose_device_at = options.lose_device_at});

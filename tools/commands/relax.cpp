@@ -81,7 +81,8 @@ constexpr std::string_view relaxed_mark = "* Written by palpa relax.\n";
 }  // namespace
 
 int relax_command(const RelaxOptions& options) {
-    const SceneDescription scene = read_scene(options.scene, options.settings);
+    SceneDescription scene = read_scene(options.scene, options.settings);
+    scene.statics.relaxes_start = true;  // also one that was saved
     print_notes(scene.notes);
     const Existing existing =
         options.coordinates ? check_output(*options.coordinates, relaxed_mark, options.overwrites)
