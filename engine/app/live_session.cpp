@@ -369,7 +369,7 @@ void LiveSession::run_simulation() {
     }
 }
 
-// After the commands that were sent before the question.
+// Answers a question once the commands that were sent before it are obeyed.
 void LiveSession::answer() {
     const std::lock_guard lock(mutex_);
     if (!question_ || !commands_.empty()) return;

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most_files = 100;
+constexpr std::size_t most_files = 300;
 
 // Beside the folder of prepared scenes.
 std::optional<fs::path> find_folder() {

@@ -26,7 +26,7 @@ private:
 // Recovery files of programs that no longer run, newest first; they can be opened as scenes.
 std::vector<std::filesystem::path> list_recovered();
 
-// Whether the file is a recovery file.
+// Whether the file is a recovery file. It names files that the scene reads by their full paths.
 bool is_recovered(const std::filesystem::path& file);
 
 // Removes it, with its atoms.

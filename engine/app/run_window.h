@@ -1,6 +1,7 @@
 // The sandbox in a window: draws a running scene, and lets a person take part.
 #pragma once
 #include "core/files.h"
+#include "ecs/world.h"
 #include "experiments/study_course.h"
 #include "haptics/device.h"
 #include "haptics/hand.h"

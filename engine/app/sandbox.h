@@ -218,7 +218,6 @@ private:
     };
     std::optional<Box> box_;                            // that is drawn with the mouse
     std::shared_ptr<const AtomDirectory> known_atoms_;  // as looked at last
-    std::vector<std::string> own_molecules_;            // of the scene, without what was added
     std::vector<SavedView> saved_views_;
     std::vector<SavedView> written_views_;             // as the scene's file has them
     std::size_t forgotten_ = 0;                        // changes that undo had no room for, as told

@@ -63,9 +63,6 @@ void Sandbox::select_anew() {
     if (!has_frame_ || known_atoms_ == frame_.atoms) return;
     const bool is_first = !known_atoms_;
     known_atoms_ = frame_.atoms;
-    if (is_first)
-        for (const AtomDirectory::Entry& entry : frame_.atoms->molecules)
-            own_molecules_.push_back(entry.molecule);
     if (is_first) return;
     framed_.clear();
     sent_ = {};  // of what was left out, molecules may be back

@@ -128,13 +128,6 @@ ViewDescription Sandbox::describe_view() const {
     view.layers = additions.layers;
     view.labels = additions.labels;
     view.hidden = additions.hidden;
-    // The scene's file knows no molecules that were added.
-    const auto is_lost = [&](const std::string& text) {
-        return !text.empty() && !names_only(text, own_molecules_);
-    };
-    std::erase_if(view.layers, [&](const ViewLayer& layer) { return is_lost(layer.of); });
-    std::erase_if(view.labels, is_lost);
-    std::erase_if(view.hidden, is_lost);
     return view;
 }
 

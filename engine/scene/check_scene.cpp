@@ -51,7 +51,8 @@ bool check_grabbed(const SceneDescription& scene, const HandTables& by,
     const bool yields = grabbed.motion == Motion::Free ||
                         (grabbed.motion == Motion::Fixed && is_flexible) ||
                         (is_moved_by_other(scene, by) &&
-                         (is_flexible || grabbed.motion == Motion::TranslateAndTurn));
+                         (is_flexible || grabbed.motion == Motion::TranslateAndTurn ||
+                          !scene.statics.relaxes_start));
     const bool is_moved = grabbed.motion == Motion::AlongX || grabbed.motion == Motion::Translate ||
                           grabbed.motion == Motion::TranslateAndTurn ||
                           grabbed.motion == Motion::WithHandle;
@@ -86,15 +87,6 @@ void check_start(const HandTables& by, bool along_x, Problems& problems) {
     }
 }
 
-void check_released(const HandTables& by, Problems& problems) {
-    const std::optional<Motion> released = by.grab.released;
-    if (!released || *released == Motion::Fixed || *released == Motion::Free) return;
-    const std::string key = by.grab_key + ".released";
-    problems.add(problems.place_of(key),
-                 fmt::format("'{}' is \"{}\", which needs a hand; expected fixed or free", key,
-                             name_of(*released)));
-}
-
 // What the hand holds; null where a problem is reported.
 const MoleculeDescription* check_hold(const SceneDescription& scene, const HandTables& by,
                                       Problems& problems) {
@@ -109,7 +101,6 @@ const MoleculeDescription* check_hold(const SceneDescription& scene, const HandT
     }
     const MoleculeDescription* const grabbed =
         find_named(scene, problems, by.grab_key + ".molecule", by.grab.molecule);
-    check_released(by, problems);
     if (scene.engine) return grabbed;  // which moves everything
     if (!grabbed || !check_grabbed(scene, by, *grabbed, problems)) return nullptr;
     check_start(by, grabbed->motion == Motion::AlongX, problems);
@@ -150,8 +141,16 @@ void check_motions(const SceneDescription& scene,
 
 void check_grab(const SceneDescription& scene, Problems& problems) {
     std::vector<const MoleculeDescription*> grabbed;
+    const bool is_unread = problems.any();  // an empty name may be one that is missing
     for (const HandTables& hand : list_hands(scene)) {
-        grabbed.push_back(check_hold(scene, hand, problems));
+        const bool is_empty = hand.grab.molecule.empty() && !is_unread;
+        if (!is_empty) grabbed.push_back(check_hold(scene, hand, problems));
+        if (!is_empty || hand.hand.stroke != Stroke::InOut) continue;
+        const std::string stroke = hand.hand_key + ".stroke";
+        problems.add(problems.place_of(stroke),
+                     fmt::format("'{}' is \"in-out\", but the hand holds nothing; expected "
+                                 "\"hold\" or \"path\"",
+                                 stroke));
     }
     // Without the right molecules in hand, what the others do is no problem of its own.
     if (scene.engine || std::ranges::find(grabbed, nullptr) != grabbed.end()) return;
@@ -168,9 +167,9 @@ void check_grab(const SceneDescription& scene, Problems& problems) {
 void check_ends(const RestraintEdit& restraint, const std::string& key, Problems& problems) {
     const std::size_t ends = restraint.atoms.size() + (restraint.place_angstrom ? 1 : 0);
     if (restraint.atoms.empty() || ends == 2) return;  // without atoms it is reported already
-    problems.add(
-        problems.place_of(key),
-        fmt::format("'{}' has {} ends; expected two atoms, or one and place_angstrom", key, ends));
+    problems.add(problems.place_of(key),
+                 fmt::format("'{}' has {} {}; expected two atoms, or one and place_angstrom", key,
+                             ends, ends == 1 ? "end" : "ends"));
 }
 
 // As the system reads numbers: fewer than four parts are one too.

@@ -103,7 +103,7 @@ struct StaticsDescription {
 RelaxMethod method_of(const StaticsDescription& statics) noexcept;
 
 struct GrabDescription {
-    std::string molecule;       // molecule that the hand moves
+    std::string molecule;       // molecule that the hand moves; empty: it holds nothing
     std::string measured_from;  // molecule from whose reference atom distances are measured; empty:
                                 // the one in the hand
     std::string atom;           // "25 CA", or a residue "25", held by a spring; empty: no spring

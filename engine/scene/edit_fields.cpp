@@ -163,14 +163,12 @@ void visit_restraint(FieldVisitor& v, RestraintEdit& e) {
              .required = true,
              .form = TextForm::ResidueOrAtom},
             e.atoms);
-    const Field place{.key = "place_angstrom",
-                      .meaning = "place to which the atom is pulled, Å",
-                      .lowest = -farthest_angstrom,
-                      .highest = farthest_angstrom};
-    if (v.is_there(place, e.place_angstrom.has_value())) {
-        if (!e.place_angstrom) e.place_angstrom.emplace();
-        v.triple(place, *e.place_angstrom);
-    }
+    triple_if_set(v,
+                  {.key = "place_angstrom",
+                   .meaning = "place to which the atom is pulled, Å",
+                   .lowest = -farthest_angstrom,
+                   .highest = farthest_angstrom},
+                  e.place_angstrom);
     v.real({.key = "k_kcal_per_mol_angstrom2",
             .meaning = "stiffness, E = k x²/2",
             .lowest = 1e-3,

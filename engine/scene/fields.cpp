@@ -128,8 +128,9 @@ void visit_molecules(FieldVisitor& v, std::vector<MoleculeDescription>& molecule
 void visit_grab(FieldVisitor& v, const Field& table, GrabDescription& g, bool is_remote) {
     v.enter_table(table);
     v.text({.key = "molecule",
-            .meaning = "name of the molecule that the hand moves",
-            .required = true},
+            .meaning = "name of the molecule that the hand moves; \"\": the hand holds nothing",
+            .required = true,
+            .may_be_empty = true},
            g.molecule);
     v.text({.key = "measured_from",
             .meaning = "name of the molecule to whose reference atom distances are measured; "
@@ -147,22 +148,22 @@ void visit_grab(FieldVisitor& v, const Field& table, GrabDescription& g, bool is
             .lowest = 1e-3,
             .highest = 1e4},
            g.spring_kcal_per_mol_angstrom2);
-    const Field place{.key = "place_angstrom",
-                      .meaning =
-                          "place of the hand's end of that spring at the start, Å; unset: "
-                          "where the part is that it pulls",
-                      .lowest = -farthest_angstrom,
-                      .highest = farthest_angstrom};
-    if (v.is_there(place, g.place_angstrom.has_value())) {
-        if (!g.place_angstrom) g.place_angstrom.emplace();
-        v.triple(place, *g.place_angstrom);
-    }
-    choose_if_set(v,
-                  {.key = "released",
-                   .meaning = "motion of the molecule after the hand has released it: fixed or "
-                              "free; unset: by a spring as before, as a whole free where something "
-                              "moves by itself, else fixed"},
-                  motion_names, g.released);
+    triple_if_set(v,
+                  {.key = "place_angstrom",
+                   .meaning = "place of the hand's end of that spring at the start, Å; unset: "
+                              "where the part is that it pulls",
+                   .lowest = -farthest_angstrom,
+                   .highest = farthest_angstrom},
+                  g.place_angstrom);
+    constexpr std::array<std::string_view, 2> motions{"fixed", "free"};
+    std::optional<std::size_t> motion;
+    if (g.released) motion = *g.released == Motion::Free ? 1 : 0;
+    v.optional_choice({.key = "released",
+                       .meaning = "motion of the molecule after the hand has released it; unset: "
+                                  "by a spring as before, as a whole free where something moves by "
+                                  "itself, else fixed"},
+                      motions, motion);
+    if (motion) g.released = *motion == 1 ? Motion::Free : Motion::Fixed;
     v.leave_table();
 }
 
@@ -498,7 +499,7 @@ public:
     }
     void triple(const Field& field, std::array<double, 3>& value) override {
         add(field, fmt::format("three numbers{}", range(field)),
-            fmt::format("[{}]", fmt::join(value, ", ")));
+            field.may_be_unset ? "unset" : fmt::format("[{}]", fmt::join(value, ", ")));
     }
     void flag(const Field& field, bool& value) override {
         add(field, "true, false", fmt::format("{}", value));
@@ -558,6 +559,13 @@ private:
 };
 
 }  // namespace
+
+void triple_if_set(FieldVisitor& v, Field field, std::optional<std::array<double, 3>>& value) {
+    if (!v.is_there(field, value.has_value())) return;
+    if (!value) value.emplace();
+    field.may_be_unset = true;
+    v.triple(field, *value);
+}
 
 void visit_scene(FieldVisitor& v, SceneDescription& scene) {
     v.text({.key = "format", .meaning = "version of the scene format; empty: 2.0"}, scene.format);

@@ -25,6 +25,7 @@ struct Field {
     bool zero = false;               // 0 is allowed, below `lowest`
     bool required = false;
     bool may_be_empty = false;  // a required text
+    bool may_be_unset = false;  // three numbers
     TextForm form = TextForm::Any;
     bool is_inline = false;      // a table in braces
     std::string_view like = {};  // a table with the keys of that one, which is documented
@@ -92,6 +93,8 @@ void choose_if_set(FieldVisitor& visitor, const Field& field,
     visitor.optional_choice(field, names, index);
     if (index) value = static_cast<Enum>(*index);
 }
+
+void triple_if_set(FieldVisitor& visitor, Field field, std::optional<std::array<double, 3>>& value);
 
 // A list of tables: `visit_entry(entry)` visits the fields of one, which has a `place`.
 template <class Entry, class VisitEntry>

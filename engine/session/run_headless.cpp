@@ -129,6 +129,7 @@ FeltStiffness stiffest_place(const SceneDescription& scene, const World& world,
                              const StageFunction& on_stage, std::size_t slot) {
     const Entity hand = find_hands(world).at(slot);
     const double peak_nN = list_hands(scene).at(slot).hand.peak_nN;
+    if (!world.find<Grip>(hand)) return {};
     const Grip& grip = grip_of(world, hand);
     const ServoSettings servo = build_servo_settings(scene, world);
     FeltStiffness stiffest;

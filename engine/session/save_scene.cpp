@@ -13,9 +13,9 @@
 #include "simulation/mechanics.h"
 #include "simulation/molecules.h"
 #include "simulation/named_parts.h"
-#include "simulation/probe.h"
 #include "simulation/remote_engine.h"
 #include "simulation/resources.h"
+#include "simulation/select_in_world.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -35,7 +35,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view files_title = "Saved by Palpa.";
 
-// To the digits of a coordinate file, so that what is saved again stays the same.
+// Rounds to the digits of a coordinate file, so that what is saved again stays the same.
 double rounded(double angstrom) { return std::round(angstrom * 1e10) / 1e10 + 0.0; }
 Vec3 rounded(const Vec3& place) {
     return place.unaryExpr([](double x) { return rounded(x); });
@@ -48,7 +48,7 @@ fs::path beside(const fs::path& file, const char* ending) {
 
 // ---- molecules ---------------------------------------------------------------------------------
 
-// In the order of their atoms.
+// Lists molecules in the order of their atoms.
 std::vector<Entity> list_molecules(const World& world) {
     std::vector<Entity> molecules;
     world.each<Molecule>([&](Entity entity, const Molecule&) { molecules.push_back(entity); });
@@ -179,50 +179,23 @@ std::string molecule_name(const World& world, Entity molecule) {
     return world.find<Molecule>(molecule)->name;
 }
 
-// A molecule for a hand that holds nothing: it takes hold of this one and lets go.
-Entity find_free_molecule(const World& world, const std::string& wanted) {
-    std::vector<Entity> free = list_molecules(world);
-    std::erase_if(free, [&](Entity molecule) {
-        bool is_held = false;
-        world.each<Grip>([&](Entity, const Grip& grip) { is_held |= grip.molecule == molecule; });
-        return is_held;
-    });
-    if (free.empty())
-        throw LoadError({wanted},
-                        "every molecule is held by the other hand; expected the empty hand "
-                        "to hold something as well");
-    const auto found = std::ranges::find(
-        free, wanted, [&](Entity molecule) { return molecule_name(world, molecule); });
-    return found == free.end() ? free.front() : *found;
-}
-
-void describe_empty_hand(const World& world, std::size_t slot, GrabDescription& grab,
-                         HandDescription& does, SceneDescription& scene) {
-    const Entity molecule = find_free_molecule(world, grab.molecule);
-    grab.molecule = molecule_name(world, molecule);
-    grab.atom.clear();
-    grab.place_angstrom.reset();
-    MoleculeDescription& saved =
-        *std::ranges::find(scene.molecules, grab.molecule, &MoleculeDescription::name);
-    grab.released = saved.motion;
-    saved.motion = motion_in_hand(world, find_hands(world)[slot]);
-    does.start_angstrom.reset();
-    if (does.stroke == Stroke::InOut) does.stroke = Stroke::Hold;
-    scene.edits.insert(scene.edits.begin(), EditDescription{0, slot, LetGoEdit{}, {}});
+// The distance from what it is measured from; nothing where that is not on a line along x.
+std::optional<double> find_distance_on_line(const World& world, Entity hand) {
+    const Molecule& origin = *world.find<Molecule>(grip_of(world, hand).measured_from);
+    const Vec3 way =
+        held_place(world, hand) - world.resource<AtomTable>().positions[origin.reference_atom];
+    if (std::hypot(way.y(), way.z()) > 1e-6) return std::nullopt;
+    return rounded(way.x());
 }
 
 void describe_hold(const World& world, Entity hand, GrabDescription& grab, HandDescription& does) {
     const Grip& grip = grip_of(world, hand);
     const std::string molecule = molecule_name(world, grip.molecule);
     const Spring* const spring = world.find<Spring>(hand);
-    const bool is_new = grab.molecule != molecule || spring;
-    if (is_new && does.stroke == Stroke::InOut) does.stroke = Stroke::Hold;
     grab.molecule = molecule;
     grab.measured_from =
         grip.measured_from == grip.molecule ? "" : molecule_name(world, grip.measured_from);
     grab.released = grip.before.motion;
-    grab.atom.clear();
-    grab.place_angstrom.reset();
     if (spring) {
         const bool is_whole =
             spring->ends.front().atoms.size() == world.find<Molecule>(grip.molecule)->atoms.count;
@@ -232,27 +205,37 @@ void describe_hold(const World& world, Entity hand, GrabDescription& grab, HandD
         const Vec3 place = rounded(spring->place);
         if (!find_remote_engine(world)) grab.place_angstrom = {place.x(), place.y(), place.z()};
     }
-    does.start_angstrom.reset();
-    if (grip.freedom == 1 && !needs_mechanics(world))
-        does.start_angstrom = rounded(grabbed_distance(world, hand));
+    if (grip.freedom != 1 || needs_mechanics(world)) return;
+    const std::optional<double> distance = find_distance_on_line(world, hand);
+    does.start_angstrom = distance.value_or(0);
+    if (!distance) grab.measured_from.clear();
 }
 
 void describe_hands(const World& world, SceneDescription& scene) {
     const std::vector<Entity> hands = find_hands(world);
+    // Distances are measured from what rests.
+    const auto rests = [&](const std::string& name) {
+        const auto origin = std::ranges::find(scene.molecules, name, &MoleculeDescription::name);
+        return origin != scene.molecules.end() && origin->motion == Motion::Fixed;
+    };
     for (std::size_t slot = 0; slot < hands.size(); ++slot) {
         GrabDescription& grab = slot == 0 ? scene.grab : scene.second->grab;
         HandDescription& does = slot == 0 ? scene.hand : scene.second->hand;
+        if (does.stroke == Stroke::InOut) does.stroke = Stroke::Hold;
         does.start_offset_angstrom = {};
-        world.find<Grip>(hands[slot]) ? describe_hold(world, hands[slot], grab, does)
-                                      : describe_empty_hand(world, slot, grab, does, scene);
+        does.start_angstrom.reset();
+        grab.atom.clear();
+        grab.place_angstrom.reset();
+        grab.released.reset();
+        if (world.find<Grip>(hands[slot])) {
+            describe_hold(world, hands[slot], grab, does);
+        } else {
+            grab.molecule.clear();
+        }
+        if (rests(grab.measured_from)) continue;
+        grab.measured_from.clear();
+        if (does.start_angstrom) does.start_angstrom = 0;
     }
-    // Distances are measured from what rests.
-    const auto forget_what_moves = [&](std::string& from) {
-        const auto origin = std::ranges::find(scene.molecules, from, &MoleculeDescription::name);
-        if (origin == scene.molecules.end() || origin->motion != Motion::Fixed) from.clear();
-    };
-    forget_what_moves(scene.grab.measured_from);
-    if (scene.second) forget_what_moves(scene.second->grab.measured_from);
 }
 
 // ---- together ----------------------------------------------------------------------------------
@@ -282,7 +265,7 @@ void describe_springs_and_marks(const World& world, SceneDescription& scene) {
         [&](Entity, const Mark& mark) { scene.pins.push_back({describe(world, mark), {}}); });
 }
 
-// As a file in `folder` names another: what is not below it by its whole path.
+// Returns how a file in `folder` names another one: by its whole path if that is not below.
 std::string name_from(const fs::path& folder, const fs::path& file) {
     std::error_code error;
     const fs::path whole = fs::weakly_canonical(fs::absolute(file, error), error);
@@ -290,6 +273,40 @@ std::string name_from(const fs::path& folder, const fs::path& file) {
     const fs::path relative = whole.lexically_relative(from);
     const bool is_below = !relative.empty() && *relative.begin() != "..";
     return (is_below ? relative : whole).generic_string();
+}
+
+// Whether the world has what a selection names; an empty one is of all atoms.
+bool is_known(const World& world, const std::string& text) {
+    if (text.empty()) return true;
+    try {
+        const std::vector<SecondaryStructure> any(world.resource<AtomTable>().size());
+        const bool is_measure = text.find(';') != std::string::npos;
+        for (const Selection& selection :
+             is_measure ? parse_measure(text) : std::vector{parse_selection(text, "saved")})
+            (void)select_in_world(world, selection, any);
+        return true;
+    } catch (const LoadError&) {
+        return false;
+    }
+}
+
+// Removes what names molecules that are no longer there; loading would refuse it.
+void forget_missing(const World& world, SceneDescription& scene) {
+    const auto is_lost = [&](const std::string& text) { return !is_known(world, text); };
+    const auto is_lost_layer = [&](const ViewLayer& layer) { return is_lost(layer.of); };
+    ViewDescription& view = scene.view;
+    if (molecule_called(world, view.look_at) == Entity{}) view.look_at.clear();
+    std::erase_if(view.layers, is_lost_layer);
+    std::erase_if(view.labels, is_lost);
+    std::erase_if(view.hidden, is_lost);
+    std::erase_if(view.marks.measures, is_lost);
+    for (SavedView& saved : view.saved) {
+        if (is_lost(saved.look_at)) saved.look_at.clear();
+        std::erase_if(saved.layers, is_lost_layer);
+    }
+    std::erase_if(scene.lesson, [&](const LessonStepDescription& step) {
+        return std::ranges::any_of(step.of, is_lost);
+    });
 }
 
 fs::path folder_of(const fs::path& file) {
@@ -341,8 +358,7 @@ void save_scene(const World& world, const ViewDescription& view, const fs::path&
     SavedScene saved;
     name_place({file.string()}, [&] { saved = describe_world(world, file); });
     saved.scene.view = view;
-    std::string& look_at = saved.scene.view.look_at;
-    if (molecule_called(world, look_at) == Entity{}) look_at.clear();
+    forget_missing(world, saved.scene);
     const fs::path folder = folder_of(file);
     saved.files.push_back(
         {file, fmt::format("# {}\n{}", title, format_scene(saved.scene, [&](const fs::path& named) {

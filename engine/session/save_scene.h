@@ -15,7 +15,8 @@ namespace palpa {
 // A scene of the world as it is now, in `file`, and what it reads from files of the same name
 // beside it: all atoms (.crd), and types and bonds (.psf) of molecules without a topology of their
 // own. Settings that the world does not use come from the scene that it was loaded from. The saved
-// scene is not relaxed on loading; edits that are still to come follow at the time that is left.
+// scene is not relaxed on loading; edits that are still to come follow at the time that is left; a
+// stroke "in-out", which is planned for the start of a scene, becomes "hold".
 // With a remote engine, which has the coordinates, no atoms are written.
 struct SavedScene {
     SceneDescription scene;

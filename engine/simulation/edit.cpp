@@ -1,7 +1,6 @@
 #include "simulation/edit.h"
 
 #include "charmm/force_field.h"
-#include "core/load_error.h"
 #include "scene/read_scene.h"
 #include "simulation/coupling.h"
 #include "simulation/held.h"
@@ -16,13 +15,11 @@
 #include "simulation/systems/publish_contact.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <optional>
 #include <span>
 #include <utility>
@@ -43,14 +40,6 @@ void check_name_is_new(const World& world, const std::string& name) {
 }
 
 // ---- after an edit ---------------------------------------------------------------------------
-
-// A hand that holds nothing feels nothing.
-LocalContactModel build_still_contact(const World& world) {
-    LocalContactModel contact;
-    contact.model.is_still = true;
-    contact.model.period_s = world.resource<Clock>().period_s;
-    return contact;
-}
 
 void refresh_contact(World& world, Entity hand) {
     Contact& contact = *world.write<Contact>(hand);
@@ -140,6 +129,11 @@ void release(World& world, Entity hand) {
     if (!held_whole) return;
     mobility = grip.before;
     free_for_spring(mobility);
+}
+
+Motion motion_in_hand(const World& world, Entity hand) {
+    if (needs_mechanics(world)) return Motion::TranslateAndTurn;
+    return world.find<Hand>(hand)->turns ? Motion::WithHandle : Motion::Translate;
 }
 
 // From what the hand measured before, or from the molecule itself.

@@ -21,6 +21,7 @@
 #include "simulation/select_in_world.h"
 #include "simulation/solvent.h"
 #include "simulation/sources.h"
+#include "simulation/systems/publish_contact.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -250,6 +251,12 @@ Grip build_grip(const SceneDescription& scene, const HandTables& tables, bool is
 // They take hold in the order of their devices.
 void add_hands(const SceneDescription& scene, World& world) {
     for (const HandTables& tables : list_hands(scene)) {
+        if (tables.grab.molecule.empty()) {
+            const Entity hand = world.create();
+            world.set(hand, Hand{.turns = !scene.has_statics()});
+            world.set(hand, Contact{build_still_contact(world), {}});
+            continue;
+        }
         AtomsOf part = find_part_at_first(scene, tables, world);
         const bool is_whole = part.atoms.empty();
         Grip grip = build_grip(scene, tables, is_whole, world);
@@ -276,10 +283,13 @@ void add_hands(const SceneDescription& scene, World& world) {
 void start_hands(const SceneDescription& scene, World& world) {
     const std::vector<HandTables> tables = list_hands(scene);
     const std::vector<Entity> hands = find_hands(world);
-    for (std::size_t i = 0; i < hands.size(); ++i) start_grabbed(scene, tables[i], hands[i], world);
+    const auto for_full_hands = [&](const auto& function) {
+        for (std::size_t i = 0; i < hands.size(); ++i)
+            if (world.find<Grip>(hands[i])) function(scene, tables[i], hands[i], world);
+    };
+    for_full_hands(start_grabbed);
     start_mechanics(world);
-    for (std::size_t i = 0; i < hands.size(); ++i)
-        check_distance(scene, tables[i], hands[i], world);
+    for_full_hands(check_distance);
 }
 
 void set_settings(const SceneDescription& scene, std::shared_ptr<const ForceField> force_field,

@@ -598,11 +598,6 @@ bool needs_mechanics(const World& world) {
     return needs;
 }
 
-Motion motion_in_hand(const World& world, Entity hand) {
-    if (needs_mechanics(world)) return Motion::TranslateAndTurn;
-    return world.find<Hand>(hand)->turns ? Motion::WithHandle : Motion::Translate;
-}
-
 const BondedTerms& bonded_terms(World& world) {
     const BondedTerms& present = world.resource<BondedTerms>();
     if (present.topology) return present;

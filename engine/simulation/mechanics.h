@@ -17,9 +17,6 @@ namespace palpa {
 // spring.
 bool needs_mechanics(const World& world);
 
-// The motion of a molecule that the hand takes as a whole.
-Motion motion_in_hand(const World& world, Entity hand);
-
 // Bonded terms of all molecules. Reads or generates those not needed before. Throws LoadError, also
 // if molecules are bonded to each other or share atoms.
 const BondedTerms& bonded_terms(World& world);

@@ -173,25 +173,6 @@ std::string expression_of(const AtomDirectory& directory, std::uint32_t atom) {
     return "none";
 }
 
-// It is evaluated for an atom that is in none of them.
-bool names_only(const std::string& expression, std::span<const std::string> molecules) {
-    AtomTable one;
-    one.names.push_back({});
-    one.positions.push_back(Vec3::Zero());
-    one.element.push_back({});
-    one.mass.push_back(0);
-    one.charge.push_back(0);
-    const std::vector<SecondaryStructure> structure(1);
-    std::vector<NamedRange> ranges;
-    for (const std::string& molecule : molecules) ranges.push_back({molecule, {}});
-    try {
-        (void)select_atoms(parse_selection(expression), {one, ranges, {}, structure, {}});
-        return true;
-    } catch (const LoadError&) {
-        return false;
-    }
-}
-
 std::vector<bool> find_in_box(const FrameScene& frame, std::span<const glm::vec3> places,
                               const PictureBox& box, std::uint32_t width, std::uint32_t height) {
     std::vector<bool> chosen(places.size(), false);

@@ -28,9 +28,6 @@ std::string expression_of(const AtomDirectory& directory, const std::vector<bool
 // An expression for this atom.
 std::string expression_of(const AtomDirectory& directory, std::uint32_t atom);
 
-// True if the expression is valid and names only these molecules.
-bool names_only(const std::string& expression, std::span<const std::string> molecules);
-
 // A rectangle of the picture by two corners, pixels from the upper left corner.
 struct PictureBox {
     glm::vec2 one{0}, other{0};

@@ -276,7 +276,7 @@ TEST_CASE("what an edit cannot mean is told where it stands", "[scene][edits][er
         {"at_s = 1\npin = [3]", 18, 8, "an entry of 'edits[1].pin' is 3; expected text"},
         {"at_s = 1\nrestraint = { atoms = [\"a\"] }", 18, 24, "expected a residue or atom"},
         {"at_s = 1\nrestraint = { atoms = [\"a:1\"] }", 18, 13,
-         "'edits[1].restraint' has 1 ends; expected two atoms, or one and place_angstrom"},
+         "'edits[1].restraint' has 1 end; expected two atoms, or one and place_angstrom"},
         {"at_s = 1\nrestraint = { atoms = [\"a:1\", \"b:1\"], place_angstrom = [0, 0, 0] }", 18, 13,
          "has 3 ends"},
         {"at_s = 1\nrestraint = { place_angstrom = [0, 0, 0] }", 18, 13,

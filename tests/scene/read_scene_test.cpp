@@ -353,13 +353,34 @@ TEST_CASE("what is required and missing is told where it should be", "[scene][er
 }
 
 TEST_CASE("required text may not be empty", "[scene][errors]") {
-    CHECK_THAT(error_of(replaced(base, "\"moved\"", "\"\"")),
-               StartsWith(at(14, 12) + "'grab.molecule' is the text \"\"") &&
-                   !Contains("; " + file + ":"));
-    CHECK_THAT(error_of(replaced(base, "\"fixed\"", "\"\"")),
-               StartsWith(at(15, 17) + "'grab.measured_from' is the text \"\""));
+    // An empty hand moves nothing and plans no stroke.
+    CHECK_THAT(error_of(replaced(base, "\"moved\"", "\"\"") + "[hand]\nstroke = \"in-out\"\n"),
+               Contains("'molecules.moved.motion' is \"along-x\"") &&
+                   Contains("'hand.stroke' is \"in-out\", but the hand holds nothing"));
+    CHECK_THAT(error_of(replaced(base, "\"FIX\"", "\"\"")), StartsWith(at(6, 11)));
+    // Distances are measured from what is in the hand then.
+    CHECK(error_of(replaced(base, "\"fixed\"", "\"\"")) == "no error");
     CHECK_THAT(error_of(replaced(base, "\"OH2\"", "\"\"")), StartsWith(at(7, 18)));
     CHECK(error_of(replaced(base, "\"Two waters\"", "\"\"")) == "no error");
+}
+
+TEST_CASE("what a saved scene says of its start is checked", "[scene][errors]") {
+    const std::string restraints = "[[restraints]]\natoms = [\"moved:1 OH2\"]\n";
+    CHECK_THAT(error_of(base + restraints),
+               Contains("'restraints[1]' has 1 end; expected two atoms, or one and "
+                        "place_angstrom"));
+    CHECK(error_of(base + restraints + "place_angstrom = [0, 0, 0]\n") == "no error");
+    CHECK_THAT(error_of(base + "[[pins]]\natoms = []\n"),
+               Contains("'pins[1].atoms' is a list of 0; expected 1 to 4 texts"));
+    CHECK_THAT(error_of(base + "[[pins]]\natoms = [\"moved\"]\n"), Contains("expected an atom"));
+    const auto held = [](const std::string& more) {
+        return replaced(base, "measured_from = \"fixed\"\n", "measured_from = \"fixed\"\n" + more);
+    };
+    CHECK_THAT(error_of(held("released = \"along-x\"\n")), Contains("expected one of fixed, free"));
+    CHECK_THAT(
+        error_of(held("place_angstrom = [0, 0, 0]\n")),
+        Contains("'grab.place_angstrom' is the end of a spring, but the hand holds 'moved' as "
+                 "a whole; expected grab.atom as well"));
 }
 
 TEST_CASE("bad TOML is told with line and column", "[scene][errors]") {

@@ -222,6 +222,8 @@ TEST_CASE("every key of a second hand is written", "[scene][second]") {
     SceneDescription scene = read_two("");
     scene.second->hand.start_angstrom = 3;
     scene.second->hand.release_s = 4;
+    scene.second->grab.place_angstrom = {1, 2, 3};
+    scene.second->grab.released = Motion::Free;
 
     const std::string text = write_two(scene);
     for (const FieldNote& field : list_fields()) {

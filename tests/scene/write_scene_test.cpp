@@ -231,7 +231,14 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
     scene.view.layers.push_back({Representation::Surface, "protein", Colouring::Potential});
     scene.view.saved = {
         {.name = "near", .representation = Representation::Lines, .layers = scene.view.layers}};
-    for (MoleculeDescription& molecule : scene.molecules) molecule.topology = folder / "dimer.psf";
+    for (MoleculeDescription& molecule : scene.molecules) {
+        molecule.topology = folder / "dimer.psf";
+        molecule.appearance = {Representation::Lines, Colouring::Element, false};
+    }
+    scene.restraints.push_back({{{"moved:1"}, std::array{1.0, 2.0, 3.0}}, {}});
+    scene.pins.push_back({{{"moved:1 OH2"}}, {}});
+    scene.grab.place_angstrom = {1, 2, 3};
+    scene.grab.released = Motion::Fixed;
     scene.engine.emplace().atoms = folder / "dimer.psf";
 
     const std::string text = formatted(scene);
@@ -250,7 +257,9 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
         if (dot == std::string::npos) continue;
         std::string table = field.key.substr(0, dot);
         if (table == "molecules.NAME") table = "molecules.fixed";
-        if (table == "view.layers" || table.starts_with("view.saved")) table = "[" + table + "]";
+        if (table == "restraints" || table == "pins" || table == "view.layers" ||
+            table.starts_with("view.saved"))
+            table = "[" + table + "]";
         CHECK(text.find("\n[" + table + "]\n") != std::string::npos);
     }
 }

@@ -179,16 +179,41 @@ TEST_CASE("a saved scene has what edits have made", "[save]") {
     check_saved(world);
 }
 
-TEST_CASE("a saved scene begins with the empty hand of the world", "[save]") {
-    World world = edited(load("water/space.toml"), LetGoEdit{});
-    const test::TemporaryFolder folder;
-    const fs::path file = folder.path() / "saved.toml";
-    save_scene(world, {}, file, "Saved.", Existing::Refuse);
-    const SceneDescription scene = read_scene(file, anywhere);
-    REQUIRE(scene.edits.size() == 1);
-    const World opened = make_edit(load_world(scene), scene.edits.front());
-    CHECK(describe_identity(opened) == describe_identity(world));
-    CHECK(find_farthest(opened, world) < 0.6e-10);
+TEST_CASE("a saved scene has the hands of the world, full and empty", "[save]") {
+    const World along_x = load("water");
+    check_saved(edited(along_x, LetGoEdit{}));
+    check_saved(edited(along_x, RemoveEdit{"fixed"}));
+    const World space = edited(load("water/space.toml"), LetGoEdit{});
+    check_saved(space);
+    check_saved(edited(space, TakeEdit{"fixed"}));
+
+    const World two = load("water/two-hands.toml");
+    check_saved(edited(two, LetGoEdit{}, 1));
+    const World on_one = edited(two, TakeEdit{"left:1 H1"}, 1);
+    check_saved(on_one);
+    check_saved(edited(on_one, LetGoEdit{}));
+    const World on_line = load("water", {"second.grab.molecule=\"\"", "second.hand.stroke=hold",
+                                         "second.grab.measured_from=\"\""});
+    check_saved(edited(on_line, TakeEdit{"fixed"}, 1));
+}
+
+TEST_CASE("a saved scene forgets views and lessons of molecules that are gone", "[save]") {
+    SceneDescription scene = read_scene(test::in_project("scenes/water"));
+    scene.view.look_at = "moved";
+    scene.view.labels = {"molecule moved", "molecule fixed"};
+    scene.view.hidden = {"molecule moved and hydrogen"};
+    scene.view.layers = {{Representation::Licorice, "within 3 of molecule moved"}};
+    scene.view.marks.measures = {"molecule moved; molecule fixed", "index 1; index 2"};
+    scene.view.saved = {{.name = "near", .look_at = "molecule moved", .layers = scene.view.layers}};
+    scene.lesson.push_back({"last", "text", "task", LessonQuantity::Way, 1.0, 2.0, 0});
+    scene.lesson.back().of = {"molecule moved"};
+    const World world = edited(load_world(scene), RemoveEdit{"moved"});
+    const World opened = check_saved(world);
+    const SceneDescription& kept = *opened.resource<SceneFile>().scene;
+    CHECK(kept.view.labels == std::vector<std::string>{"molecule fixed"});
+    CHECK(kept.view.marks.measures == std::vector<std::string>{"index 1; index 2"});
+    CHECK(kept.view.saved.size() == 1);
+    CHECK(kept.lesson.size() + 1 == scene.lesson.size());
 }
 
 TEST_CASE("a saved scene keeps the edits of its file that are still to come", "[save]") {

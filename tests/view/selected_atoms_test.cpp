@@ -168,14 +168,6 @@ TEST_CASE("atoms of a world are selected as pictures see them, and errors have a
                Contains("column 13"));
 }
 
-TEST_CASE("an expression that names a molecule that was added is known", "[view][selection]") {
-    const std::vector<std::string> own{"a", "b"};
-    CHECK(names_only("molecule a and resid 5 or within 5 of molecule b", own));
-    CHECK(names_only("helix and charge > 0.3 and mass > 2 and element C and byres hand", own));
-    CHECK_FALSE(names_only("name CA or not molecule w2", own));
-    CHECK_FALSE(names_only("protien", own));
-}
-
 TEST_CASE("hidden atoms are drawn by layers alone", "[view][selection]") {
     const World world =
         load_world(read_scene(test::in_project("scenes/water"), std::vector<std::string>()));

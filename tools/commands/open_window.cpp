@@ -23,7 +23,6 @@
 #include "view/first_view.h"
 
 #include <fmt/format.h>
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -93,16 +92,23 @@ Existing check_shot(const RunOptions& options) {
                              : Existing::Refuse;
 }
 
-// How the file is opened again, where it lies apart from the files that it names.
-std::string describe_saved(const fs::path& file) {
+// Whether the scene may be read, with files in other folders or without.
+bool can_read(const fs::path& file, std::span<const std::string> settings) {
     try {
-        (void)read_scene(file);
-        return file.string();
+        (void)read_scene(file, settings);
+        return true;
     } catch (const LoadError&) {
-        return fmt::format(
-            "{}; the scene names files in other folders, so open it with 'palpa run {} {}'",
-            file.string(), shell_word(file.string()), allow_outside);
+        return false;
     }
+}
+
+// Says how the file is opened again, where it lies apart from the files that it names.
+std::string describe_saved(const fs::path& file) {
+    const std::vector<std::string> outside{std::string(allow_outside)};
+    if (can_read(file, {}) || !can_read(file, outside)) return file.string();
+    return fmt::format(
+        "{}; the scene names files in other folders, so open it with 'palpa run {} {}'",
+        file.string(), shell_word(file.string()), allow_outside);
 }
 
 void print_report(const SceneDescription& played, const WindowReport& report) {

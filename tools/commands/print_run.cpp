@@ -31,7 +31,7 @@ constexpr const char* unrelaxed_note =
 
 int freedom_of_hands(const World& world) {
     int freedom = 0;
-    for (const Entity hand : find_hands(world)) freedom += grip_of(world, hand).freedom;
+    world.each<Grip>([&](Entity, const Grip& grip) { freedom += grip.freedom; });
     return freedom;
 }
 
@@ -172,9 +172,12 @@ void print_line(const SceneDescription& scene, const World& world, ProgressLine&
         print_mobile(world, *report.joints_at_rest);
     } else if (report.rigid) {
         print_relaxed(world, *report.rigid);
+    } else if (!world.find<Grip>(first_hand(world))) {
+        fmt::print("  in hand     nothing\n");
     } else if (const std::optional<double> rest = equilibrium_distance(world)) {
         print_rest(world, *rest);
     }
+    if (!world.find<Grip>(first_hand(world))) return print_cap(scene, world);
     // In space these are places on a line along x, and no distances.
     const bool in_space = moves_in_space(world);
     const char* const along = in_space ? "x = " : "";

@@ -341,6 +341,13 @@ void update_contact(World& world, Entity hand, const HandPose& pose) {
     last = std::move(contact);
 }
 
+LocalContactModel build_still_contact(const World& world) {
+    LocalContactModel contact;
+    contact.model.is_still = true;
+    contact.model.period_s = world.resource<Clock>().period_s;
+    return contact;
+}
+
 LocalContactModel build_local_contact(const World& world, Entity hand, const HandPose& pose) {
     LocalContactModel contact;
     if (const EngineHold* const hold = world.find<EngineHold>(hand)) {

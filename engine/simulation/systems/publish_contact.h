@@ -16,6 +16,9 @@ void update_contact(World& world, Entity hand, const HandPose& pose);
 // The model at the present positions; without a prediction checked so far.
 LocalContactModel build_local_contact(const World& world, Entity hand, const HandPose& pose);
 
+// The model of a hand that holds nothing: it feels nothing.
+LocalContactModel build_still_contact(const World& world);
+
 // Selects the atoms that a servo tick has time for, beside those that other hands hold: the nearest
 // to the held molecule. Repeated when it has moved by 0.5 Å, and now and then.
 void update_near(World& world, Entity hand);
