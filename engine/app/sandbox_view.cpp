@@ -122,7 +122,7 @@ ViewDescription Sandbox::describe_view() const {
         for (SavedView& saved : view.saved)
             if (!saved.representation) saved.representation = options_.view.representation;
     }
-    view.camera = describe_camera(camera_, first_, first_picture_, frame_.framed, free_room());
+    view.camera = describe_camera(camera_, first_, frame_.picture, frame_.framed, free_room());
     view.clip = clips_;
     const ViewAdditions& additions = overlay_.additions();
     view.layers = additions.layers;

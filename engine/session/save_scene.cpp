@@ -175,66 +175,73 @@ private:
 
 // ---- hands -------------------------------------------------------------------------------------
 
-std::string molecule_name(const World& world, Entity molecule) {
-    return world.find<Molecule>(molecule)->name;
+Vec3 find_way(const World& world, Entity hand, const Molecule& origin) {
+    return held_place(world, hand) - world.resource<AtomTable>().positions[origin.reference_atom];
 }
 
-// The distance from what it is measured from; nothing where that is not on a line along x.
-std::optional<double> find_distance_on_line(const World& world, Entity hand) {
-    const Molecule& origin = *world.find<Molecule>(grip_of(world, hand).measured_from);
-    const Vec3 way =
-        held_place(world, hand) - world.resource<AtomTable>().positions[origin.reference_atom];
-    if (std::hypot(way.y(), way.z()) > 1e-6) return std::nullopt;
-    return rounded(way.x());
+bool is_fixed(const SceneDescription& scene, const std::string& molecule) {
+    const auto found = std::ranges::find(scene.molecules, molecule, &MoleculeDescription::name);
+    return found != scene.molecules.end() && found->motion == Motion::Fixed;
 }
 
-void describe_hold(const World& world, Entity hand, GrabDescription& grab, HandDescription& does) {
+// The molecule from which distances are measured; empty: the one in the hand, where the other one
+// moves, is too far away, or, for a hand on a line along x, is not on it.
+std::string find_origin(const World& world, Entity hand, const SceneDescription& scene) {
+    constexpr double farthest = 1000;  // Å
     const Grip& grip = grip_of(world, hand);
-    const std::string molecule = molecule_name(world, grip.molecule);
-    const Spring* const spring = world.find<Spring>(hand);
-    grab.molecule = molecule;
-    grab.measured_from =
-        grip.measured_from == grip.molecule ? "" : molecule_name(world, grip.measured_from);
+    if (grip.measured_from == grip.molecule) return {};
+    const Molecule& origin = *world.find<Molecule>(grip.measured_from);
+    if (!is_fixed(scene, origin.name)) return {};
+    const Vec3 way = find_way(world, hand, origin);
+    const bool is_on_line = way.x() >= 0 && std::hypot(way.y(), way.z()) < 1e-6;
+    return way.norm() < farthest && (grip.freedom > 1 || is_on_line) ? origin.name : "";
+}
+
+void describe_hold(const World& world, Entity hand, const SceneDescription& scene,
+                   GrabDescription& grab, HandDescription& does) {
+    const Grip& grip = grip_of(world, hand);
+    grab.molecule = world.find<Molecule>(grip.molecule)->name;
+    grab.measured_from = find_origin(world, hand, scene);
     grab.released = grip.before.motion;
-    if (spring) {
-        const bool is_whole =
-            spring->ends.front().atoms.size() == world.find<Molecule>(grip.molecule)->atoms.count;
-        if (!is_whole || !find_remote_engine(world))
-            grab.atom = name_within(world, spring->ends.front());
-        grab.spring_kcal_per_mol_angstrom2 = spring->k;
-        const Vec3 place = rounded(spring->place);
-        if (!find_remote_engine(world)) grab.place_angstrom = {place.x(), place.y(), place.z()};
+    if (grip.freedom == 1 && !needs_mechanics(world)) {
+        const Entity origin = molecule_called(world, grab.measured_from);
+        does.start_angstrom =
+            origin == Entity{} ? 0
+                               : rounded(find_way(world, hand, *world.find<Molecule>(origin)).x());
     }
-    if (grip.freedom != 1 || needs_mechanics(world)) return;
-    const std::optional<double> distance = find_distance_on_line(world, hand);
-    does.start_angstrom = distance.value_or(0);
-    if (!distance) grab.measured_from.clear();
+    const Spring* const spring = world.find<Spring>(hand);
+    if (!spring) return;
+    grab.spring_kcal_per_mol_angstrom2 = spring->k;
+    const AtomsOf& part = spring->ends.front();
+    const bool is_whole = part.atoms.size() == world.find<Molecule>(part.molecule)->atoms.count;
+    if (!is_whole || !find_remote_engine(world)) grab.atom = name_within(world, part);
+    if (find_remote_engine(world)) return;
+    const Vec3 place = rounded(spring->place);
+    grab.place_angstrom = {place.x(), place.y(), place.z()};
+}
+
+// Clears what says how a hand begins.
+void forget_start(GrabDescription& grab, HandDescription& does) {
+    if (does.stroke == Stroke::InOut) does.stroke = Stroke::Hold;
+    does.start_offset_angstrom = {};
+    does.start_angstrom.reset();
+    grab.molecule.clear();
+    grab.atom.clear();
+    grab.place_angstrom.reset();
+    grab.released.reset();
 }
 
 void describe_hands(const World& world, SceneDescription& scene) {
     const std::vector<Entity> hands = find_hands(world);
-    // Distances are measured from what rests.
-    const auto rests = [&](const std::string& name) {
-        const auto origin = std::ranges::find(scene.molecules, name, &MoleculeDescription::name);
-        return origin != scene.molecules.end() && origin->motion == Motion::Fixed;
-    };
     for (std::size_t slot = 0; slot < hands.size(); ++slot) {
         GrabDescription& grab = slot == 0 ? scene.grab : scene.second->grab;
         HandDescription& does = slot == 0 ? scene.hand : scene.second->hand;
-        if (does.stroke == Stroke::InOut) does.stroke = Stroke::Hold;
-        does.start_offset_angstrom = {};
-        does.start_angstrom.reset();
-        grab.atom.clear();
-        grab.place_angstrom.reset();
-        grab.released.reset();
+        forget_start(grab, does);
         if (world.find<Grip>(hands[slot])) {
-            describe_hold(world, hands[slot], grab, does);
-        } else {
-            grab.molecule.clear();
+            describe_hold(world, hands[slot], scene, grab, does);
+        } else if (!is_fixed(scene, grab.measured_from)) {
+            grab.measured_from.clear();
         }
-        if (rests(grab.measured_from)) continue;
-        grab.measured_from.clear();
-        if (does.start_angstrom) does.start_angstrom = 0;
     }
 }
 

@@ -699,6 +699,7 @@ class Session(unittest.TestCase):
             first = self.find_waters(display)
             display.do("mousemove", 660, 330, "keydown", "space")
             self.draw_until_nearer(display, first, 0.6)
+            apart = self.way(*self.find_waters(display))
             display.do("key", "ctrl+s")
             self.wait_until(saved.exists, "the saved scene")
             display.do("keyup", "space")
@@ -711,7 +712,11 @@ class Session(unittest.TestCase):
             self.assertLess(off, 1e-9)
             self.assertLess(pose[0], 0.7 * self.poses_of(before)[0][0])
 
+            for shot in self.folder.glob("palpa-*.png"):
+                shot.unlink()
             self.start(display, "--record", after, scene=saved)
+            # As large as it was seen, though the molecules are nearer to each other.
+            self.assertAlmostEqual(self.way(*self.find_waters(display)), apart, delta=0.2 * apart)
             self.quit(display)
         for a, b in zip(pose, self.poses_of(after)[0]):
             self.assertAlmostEqual(a, b, delta=1e-9)

@@ -183,6 +183,9 @@ TEST_CASE("a saved scene has the hands of the world, full and empty", "[save]") 
     const World along_x = load("water");
     check_saved(edited(along_x, LetGoEdit{}));
     check_saved(edited(along_x, RemoveEdit{"fixed"}));
+    World behind = along_x;
+    pull(behind, {{-12, 0, 0}});
+    check_saved(behind);
     const World space = edited(load("water/space.toml"), LetGoEdit{});
     check_saved(space);
     check_saved(edited(space, TakeEdit{"fixed"}));
