@@ -248,7 +248,7 @@ TEST_CASE("lines that are wrong are refused and change nothing", "[session][comm
     CHECK_THAT(why("add = { structure = \"/etc/passwd\", name = \"x\", at_angstrom = [0,0,0] }"),
                Contains("outside of the scene's folder"));
     CHECK_THAT(why("mobility = { molecule = \"moved\" }"), Contains("changes nothing"));
-    CHECK_THAT(why("restraint = { atoms = [\"moved:1\"] }"), Contains("has 1 ends"));
+    CHECK_THAT(why("restraint = { atoms = [\"moved:1\"] }"), Contains("has 1 end"));
     CHECK_THAT(why("coupling = { mode = \"7\" }"), Contains("coupling.mode"));
     CHECK_THAT(why("read = \"moved:7 CA\""), Contains("names no atom"));
     CHECK_THAT(why("read = \"protien\""), Contains("column 1"));
