@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "core/translate.h"
 #include "core/units.h"
+#include "simulation/bonded_terms.h"
 #include "simulation/components.h"
 #include "simulation/coupling.h"
 #include "simulation/held.h"

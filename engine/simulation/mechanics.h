@@ -2,6 +2,7 @@
 #pragma once
 #include "ecs/world.h"
 #include "scene/description.h"
+#include "simulation/plan_mechanics.h"
 #include "simulation/resources.h"
 #include "statics/relax_joints.h"
 #include "statics/torsion_model.h"
@@ -16,10 +17,6 @@ namespace palpa {
 // True if anything is mobile: joints that may turn, a base that is free or turns, something on a
 // spring.
 bool needs_mechanics(const World& world);
-
-// Bonded terms of all molecules. Reads or generates those not needed before. Throws LoadError, also
-// if molecules are bonded to each other or share atoms.
-const BondedTerms& bonded_terms(World& world);
 
 // Rebuilds the mechanics, or removes them, from the mobility of the molecules and what hands hold,
 // at the present positions. Throws LoadError for joints of the scene that do not exist, and for
@@ -41,19 +38,12 @@ using RelaxProgressFunction = std::function<bool(const RelaxProgress&)>;
 // StartReport has the result.
 void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_relax = {});
 
-// What a hand holds: the molecule of the torsion model whose base it moves, or the spring by which
-// it pulls.
-struct HeldPart {
-    std::uint32_t base = 0;
-    std::optional<ModelSpring> spring = {};
-};
-
 // A world for measurements: a model at rest at its reference positions, moved as the scene's
 // statics say, and one hand that moves a base or pulls at a spring from there; nothing else.
 World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
                             const HeldPart& held);
 
-// What the first hand holds.
+// Returns what the first hand holds.
 HeldPart held_part(const World& world);
 
 // For measurements outside of a step: the first hand moves what it holds, and mobile parts relax as
