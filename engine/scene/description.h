@@ -272,7 +272,7 @@ struct ViewDescription {
     ViewMarks marks{};
 };
 
-// What is there from the start, in the form of an edit.
+// Restraints and pins that a scene has from the start, in the form of an edit.
 struct StartRestraint : RestraintEdit {
     TextPlace place;
 };

@@ -209,7 +209,7 @@ void add_anchors(const SceneDescription& scene, const MoleculeDescription& molec
     }
 }
 
-// What acts and what is marked from the start.
+// Adds the springs that act and the atoms that are marked from the start.
 void add_restraints_and_pins(const SceneDescription& scene, World& world) {
     for (const StartRestraint& restraint : scene.restraints)
         name_place(restraint.place,

@@ -29,7 +29,7 @@ namespace {
 
 const std::vector<std::string> anywhere{std::string(allow_outside)};
 
-// What a person would call the same, all but coordinates.
+// Lists all but the coordinates: atoms, molecules, looks, hands, springs and marks.
 std::string describe_identity(const World& world) {
     std::string text;
     const AtomTable& atoms = world.resource<AtomTable>();
