@@ -229,15 +229,14 @@ class Session(unittest.TestCase):
     def quit_once_saved(self, display):
         """Nothing is asked as soon as what the session has undone has reached the window; until then a
         second Escape closes the question."""
-        for _ in range(1200):
-            if self.program.poll() is not None:
-                break
+        for _ in range(60):
             display.do("key", "Escape")
-            time.sleep(0.05)
-        else:
-            self.fail("it asks whether to save what is saved")
-        _, err = self.program.communicate()
-        self.assertEqual(self.program.returncode, 0, err)
+            try:
+                _, err = self.program.communicate(timeout=2)
+            except subprocess.TimeoutExpired:
+                continue
+            return self.assertEqual(self.program.returncode, 0, err)
+        self.fail("it asks whether to save what is saved")
 
     def test_a_session_with_mouse_and_keys(self):
         with Display() as display:
