@@ -4,6 +4,7 @@
 #include "simulation/held.h"
 #include "simulation/resources.h"
 #include "simulation/select_in_world.h"
+#include "simulation/solver.h"
 #include "view/first_view.h"
 #include "view/legend.h"
 
@@ -78,11 +79,10 @@ LiveFrame LiveFrameBuilder::build(const LiveSimulation& simulation) {
     frame.legend = find_legend(world, view_);
     frame.readout.holds_something = frame.hands.front().held.count > 0;
     frame.readout.contact = contacts.front();
-    const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
     frame.readout.error_pN = find_error_estimate(world);
-    if (adaptive && adaptive->accuracy) {
-        frame.readout.error_pN = adaptive->accuracy->error();
-        frame.readout.work_budget = adaptive->accuracy->work_budget();
+    if (const AccuracyController* const accuracy = find_accuracy_controller(world)) {
+        frame.readout.error_pN = accuracy->error();
+        frame.readout.work_budget = accuracy->work_budget();
     }
     frame.readout.playback = find_playback(world);
     return frame;

@@ -5,9 +5,9 @@
 #include "scene/edits.h"
 #include "session/lesson_meter.h"
 #include "session/view_additions.h"
-#include "simulation/accuracy_controller.h"
 #include "simulation/client_pull.h"
 #include "simulation/playback.h"
+#include "statics/accuracy_controller.h"
 #include "view/build_frame.h"
 
 #include <cstdint>

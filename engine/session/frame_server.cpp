@@ -5,6 +5,7 @@
 #include "molecule/atoms.h"
 #include "simulation/held.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 #include "simulation/systems/pull_by_clients.h"
 
 #include <fmt/format.h>

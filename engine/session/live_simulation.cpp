@@ -11,6 +11,7 @@
 #include "simulation/playback.h"
 #include "simulation/remote_engine.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 #include "simulation/step.h"
 #include "simulation/systems/follow_engine.h"
 #include "simulation/systems/follow_hands.h"
@@ -196,7 +197,7 @@ void LiveSimulation::obey(const Pause& pause) {
 
 void LiveSimulation::obey(const Reset& reset) {
     ++readout_.resets;
-    if (find_remote_engine(world_)) {
+    if (!places_atoms(world_)) {
         readout_.problem = "reset is not possible: a remote engine moves the atoms";
         return;
     }
@@ -238,9 +239,8 @@ bool LiveSimulation::takes_long(const EditDescription& edit) const noexcept {
     const auto* const take = std::get_if<TakeEdit>(&edit.action);
     const bool makes_mobile = std::holds_alternative<MobilityEdit>(edit.action) ||
                               (take && take->what.find(':') != std::string::npos);
-    return world_.resource<AtomTable>().positions.size() >= many_atoms &&
-           !find_remote_engine(world_) && (needs_mechanics(world_) || makes_mobile) &&
-           !std::visit(is_quick, edit.action);
+    return world_.resource<AtomTable>().positions.size() >= many_atoms && places_atoms(world_) &&
+           (needs_mechanics(world_) || makes_mobile) && !std::visit(is_quick, edit.action);
 }
 
 void LiveSimulation::build_draft() noexcept {
@@ -266,15 +266,13 @@ void LiveSimulation::play(const AdoptEvent& event) {
 }
 
 void LiveSimulation::start_renewal() {
-    const SecondOrder* const second = world_.find_resource<SecondOrder>();
-    if (!second || !second->statics.pending) return;
-    SecondOrder& filled = world_.write<SecondOrder>();
-    renewals_.start_if_pending(model_of(world_), filled.settings, filled.statics);
+    if (const std::optional<RenewalWork> work = find_renewal(world_))
+        renewals_.start_if_pending(work->model, work->settings, work->statics);
 }
 
 bool LiveSimulation::has_renewal() {
-    const SecondOrder* const second = world_.find_resource<SecondOrder>();
-    return second && renewals_.is_ready(second->statics);
+    const std::optional<RenewalWork> work = find_renewal(world_);
+    return work && renewals_.is_ready(work->statics);
 }
 
 void LiveSimulation::edit(const EditDescription& edit, bool settles) {
@@ -299,8 +297,7 @@ void LiveSimulation::edit(const EditDescription& edit, bool settles) {
 // Keeps the world in which each hand begins to hold, or last rested.
 void LiveSimulation::begin_pulls() {
     constexpr double rest_s = 10, rest_angstrom = 0.02;
-    if (undoes_edits_alone_ || find_remote_engine(world_) || world_.find_resource<Playback>())
-        return;
+    if (undoes_edits_alone_ || !places_atoms(world_) || world_.find_resource<Playback>()) return;
     const std::vector<Entity> hands = find_hands(world_);
     held_since_.resize(poses_.size());
     for (std::size_t slot = 0; slot < poses_.size(); ++slot) {
@@ -387,7 +384,7 @@ void LiveSimulation::publish_edit(bool settles) {
 
 void LiveSimulation::follow_unbinding() {
     const bool is_held = world_.find<Grip>(first_hand(world_)) != nullptr;
-    if (!has_mobile(world_) || !is_held || find_remote_engine(world_)) return;
+    if (!has_mobile(world_) || !is_held || !places_atoms(world_)) return;
     const bool is_other = std::exchange(unbinding_edition_, edition_) != edition_;
     if (!unbinding_ || (is_other && !unbinding_->suits(world_))) {
         unbinding_.emplace(world_, poses_.front().time_s);

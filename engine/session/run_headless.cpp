@@ -16,6 +16,7 @@
 #include "simulation/remote_engine.h"
 #include "simulation/resources.h"
 #include "simulation/select_in_world.h"
+#include "simulation/solver.h"
 #include "simulation/step.h"
 #include "simulation/systems/pull_by_clients.h"
 
@@ -420,7 +421,7 @@ std::vector<std::string> list_neglected(const SceneDescription& scene, const Wor
     const auto coordinates = static_cast<std::int64_t>(model_of(world).coordinates);
     if (s.cutoff_angstrom)
         neglected.push_back(fmt::format("pairs beyond {} A", *s.cutoff_angstrom));
-    if (world.find_resource<AdaptiveState>() && s.active < coordinates)
+    if (joint_activity(world) == JointActivity::Active && s.active < coordinates)
         neglected.push_back(fmt::format("motion of all but {} of {} degrees of freedom at a time",
                                         s.active, coordinates));
     if (const std::size_t held = world.resource<StartReport>().joints_held; held > 0)
@@ -433,14 +434,14 @@ std::vector<std::string> list_neglected(const SceneDescription& scene, const Wor
 }
 
 std::optional<EngineSummary> sum_up_engine(const World& world) {
-    const RemoteEngine* const engine = find_remote_engine(world);
+    const std::optional<EngineReport> engine = report_engine(world);
     if (!engine) return {};
     EngineSummary summary;
     summary.frames = engine->frames;
-    if (engine->frame_interval_s > 0) summary.frames_per_s = 1 / engine->frame_interval_s;
-    summary.delay_ms = 1e3 * find_engine_delay(world);
+    summary.frames_per_s = engine->frames_per_s;
+    summary.delay_ms = 1e3 * engine->delay_s;
     summary.interruptions = engine->interruptions;
-    summary.state = describe_engine(world);
+    summary.state = engine->state;
     return summary;
 }
 
@@ -492,14 +493,12 @@ public:
         // Where molecules make room for each other, one may well be on either side of another.
         constexpr double on_top = 1;  // Å
         summary.went_through = summary.unbinding && summary.unbinding->closest < on_top;
-        const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
-        const ForceMemory& memory =
-            adaptive ? adaptive->statics.memory : world.resource<Solver>().statics.memory;
-        if (adaptive) summary.activity = activity_.activity();
+        if (joint_activity(world) == JointActivity::Active) summary.activity = activity_.activity();
         summary.relaxation = relaxation_.summary();
         summary.neglected = list_neglected(scene_, world);
-        summary.sums = memory.evaluations;
-        summary.sums_in_double = memory.fast_pairs.in_double;
+        const ForceCount sums = count_forces(world);
+        summary.sums = sums.all;
+        summary.sums_in_double = sums.in_double;
         return summary;
     }
 

@@ -16,6 +16,7 @@
 #include "simulation/remote_engine.h"
 #include "simulation/resources.h"
 #include "simulation/select_in_world.h"
+#include "simulation/solver.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -107,7 +108,7 @@ public:
         saved.appearance = {};
         if (const Appearance* const look = world_.find<Appearance>(entity))
             saved.appearance = *look;
-        if (find_remote_engine(world_)) return saved;
+        if (!places_atoms(world_)) return saved;
 
         const AtomName& reference = atoms.names[molecule.reference_atom];
         saved.reference_atom = reference.number + " " + reference.atom;
@@ -214,8 +215,8 @@ void describe_hold(const World& world, Entity hand, const SceneDescription& scen
     grab.spring_kcal_per_mol_angstrom2 = spring->k;
     const AtomsOf& part = spring->ends.front();
     const bool is_whole = part.atoms.size() == world.find<Molecule>(part.molecule)->atoms.count;
-    if (!is_whole || !find_remote_engine(world)) grab.atom = name_within(world, part);
-    if (find_remote_engine(world)) return;
+    if (!is_whole || places_atoms(world)) grab.atom = name_within(world, part);
+    if (!places_atoms(world)) return;
     const Vec3 place = rounded(spring->place);
     grab.place_angstrom = {place.x(), place.y(), place.z()};
 }

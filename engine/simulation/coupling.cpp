@@ -2,6 +2,7 @@
 
 #include "simulation/held.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 #include "simulation/systems/publish_contact.h"
 
 #include <cstddef>
@@ -93,15 +94,7 @@ Coupling build_coupling(const CouplingDescription& coupling) {
 
 void set_coupling(const CouplingDescription& coupling, World& world) {
     world.set_resource(build_coupling(coupling));
-    if (AdaptiveState* const adaptive = world.write_if<AdaptiveState>()) {
-        if (adaptive->accuracy && coupling.feel_within_pN)
-            adaptive->accuracy->set_tolerance(*coupling.feel_within_pN);
-    }
-    SecondOrder* const second = world.write_if<SecondOrder>();
-    if (second && coupling.feel_within_pN) {
-        second->settings.tolerance =
-            *coupling.feel_within_pN / units::piconewton_per_kcal_per_mol_angstrom;
-    }
+    if (coupling.feel_within_pN) set_tolerance(world, *coupling.feel_within_pN);
     for (const Entity hand : find_hands(world)) {
         if (!world.find<Grip>(hand)) continue;  // it feels nothing in any mode
         update_near(world, hand);

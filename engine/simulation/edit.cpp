@@ -9,8 +9,8 @@
 #include "simulation/molecules.h"
 #include "simulation/named_parts.h"
 #include "simulation/playback.h"
-#include "simulation/remote_engine.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 #include "simulation/sources.h"
 #include "simulation/systems/publish_contact.h"
 
@@ -74,14 +74,7 @@ void keep_clock_and_devices(const World& world, World& other) {
     });
     other.write<Clock>() = world.resource<Clock>();
     carry_playback(world, other);
-    const RemoteEngine* const engine = find_remote_engine(world);
-    if (!engine) return;
-    // Its atoms are where they are; hands take hold of them there.
-    other.set_resource(*engine);
-    other.write<AtomTable>().positions = world.resource<AtomTable>().positions;
-    for (const Entity hand : find_hands(other)) {
-        if (EngineHold* const hold = other.write<EngineHold>(hand)) hold->is_live = false;
-    }
+    carry_engine(world, other);
 }
 
 // Changes a copy, which takes the world's place only if all went well.
@@ -236,7 +229,7 @@ void take(World& world, Entity hand, const TakeEdit& edit) {
         AtomsOf what = find_atoms(changed, edit.what);
         release(changed, hand);
         // A remote engine's atoms are held by springs alone.
-        if (find_remote_engine(changed)) {
+        if (!places_atoms(changed)) {
             if (what.atoms.empty()) what.atoms = all_atoms_of(changed, what.molecule);
             changed.set(hand, build_grip(changed, what));
             set_spring(changed, hand, what);
@@ -411,7 +404,7 @@ Entity hand_at(const World& world, std::size_t slot) {
 // What a remote engine moves can be held and looked at.
 void check_engine_allows(const World& world, const EditDescription& edit) {
     const EditAction& action = edit.action;
-    if (!find_remote_engine(world) || std::holds_alternative<TakeEdit>(action) ||
+    if (places_atoms(world) || std::holds_alternative<TakeEdit>(action) ||
         std::holds_alternative<LetGoEdit>(action) ||
         std::holds_alternative<AppearanceEdit>(action) ||
         std::holds_alternative<CouplingEdit>(action))

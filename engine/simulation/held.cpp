@@ -3,49 +3,14 @@
 #include "core/assertion.h"
 #include "core/text.h"
 #include "field/frozen_field.h"
+#include "simulation/solver.h"
 #include "simulation/systems/gather_springs.h"
-#include "simulation/systems/pull_by_clients.h"
 
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
 namespace palpa {
-namespace {
-
-// By the linearised model: torque about the origin, and force.
-Vec6 find_model_pull(const World& world, const SecondOrder& second, Entity hand) noexcept {
-    const auto found = std::ranges::find(second.hands, hand);
-    if (found == second.hands.end()) return Vec6::Zero();
-    Vec6 pull =
-        find_hand_pull(second.statics, static_cast<std::size_t>(found - second.hands.begin()));
-    pull.head<3>() += held_place(world, hand).cross(Vec3(pull.tail<3>()));
-    return pull;
-}
-
-// A base that the handle turns is turned as well.
-void move_mobile(World& world, Entity hand, const Vec3& by, const Quat& turn) noexcept {
-    const Grip& grip = grip_of(world, hand);
-    const TorsionModel& model = model_of(world);
-    TorsionState& state = world.write<TorsionState>();
-    if (const std::optional<std::size_t> index = find_spring_index(world, hand)) {
-        state.springs[*index].place += by;
-        world.write<Spring>(hand)->place = state.springs[*index].place;
-        return;
-    }
-    const auto base = static_cast<std::size_t>(grip.base);
-    AdaptiveState* const adaptive = world.write_if<AdaptiveState>();
-    const bool turns = grip.freedom == 6 && turn.vec() != Vec3::Zero();
-    if (adaptive) {
-        turns ? turn_base(model, base, turn, by, state, adaptive->statics)
-              : shift_base(model, base, by, state, adaptive->statics);
-    } else {
-        turns ? turn_base(model, base, turn, by, state) : shift_base(model, base, by, state);
-    }
-}
-
-}  // namespace
-
 bool is_mobile(const World& world, Entity hand) noexcept {
     return grip_of(world, hand).base >= 0 || find_spring_index(world, hand);
 }
@@ -324,87 +289,6 @@ std::vector<Vec3> reference_positions(const World& world) {
     std::vector<Vec3> positions = world.resource<AtomTable>().positions;
     put_in_table(model_of(world), model_atoms_of(world), model_of(world).reference, positions);
     return positions;
-}
-
-std::size_t find_active_freedom(const World& world) noexcept {
-    const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
-    return adaptive ? find_active_freedom(model_of(world), adaptive->statics)
-                    : static_cast<std::size_t>(model_of(world).coordinates);
-}
-
-Vec3 find_force_on_held(const World& world, Entity hand) noexcept {
-    const Grip* const grip = world.find<Grip>(hand);
-    if (!grip || !is_mobile(world, hand) || !has_mobile(world)) return Vec3::Zero();
-    const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
-    if (adaptive && !spring_of(world, hand))
-        return find_wrench_on(adaptive->statics, static_cast<std::size_t>(grip->base)).tail<3>();
-    if (const SecondOrder* const second = find_second_order(world))
-        return find_model_pull(world, *second, hand).tail<3>();
-    return find_force_on_held(model_of(world), world.resource<TorsionState>(),
-                              held_in_state(world, hand));
-}
-
-Vec6 find_pull_on_held(const World& world, Entity hand) noexcept {
-    const Grip* const grip = world.find<Grip>(hand);
-    if (!grip || grip->base < 0) return Vec6::Zero();
-    const auto base = static_cast<std::size_t>(grip->base);
-    if (const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>())
-        return find_wrench_on(adaptive->statics, base);
-    if (const SecondOrder* const second = find_second_order(world))
-        return find_model_pull(world, *second, hand);
-    // What atoms of the molecule do to each other adds up to nothing.
-    const TorsionModel& model = model_of(world);
-    const TorsionState& state = world.resource<TorsionState>();
-    Vec6 wrench = Vec6::Zero();
-    for (std::size_t i = 0; i < state.forces.size(); ++i) {
-        if (model.tree.molecule_of[model.tree.bodies.body_of[i]] != base) continue;
-        wrench.head<3>() += state.positions[i].cross(state.forces[i]);
-        wrench.tail<3>() += state.forces[i];
-    }
-    return wrench;
-}
-
-const SecondOrder* find_second_order(const World& world) noexcept {
-    const SecondOrder* const second = world.find_resource<SecondOrder>();
-    return second && second->statics.linear ? second : nullptr;
-}
-
-double find_energy(const World& world) noexcept {
-    const SecondOrder* const second = find_second_order(world);
-    const double energy =
-        second ? second->statics.value.energy : world.resource<TorsionState>().energy();
-    return energy - find_client_energy(world);
-}
-
-std::optional<double> find_error_estimate(const World& world) noexcept {
-    if (const ErrorEstimate* const estimate = world.find_resource<ErrorEstimate>())
-        return estimate->last_pN;
-    const std::optional<RelaxStepReport>& relaxed = world.resource<StepReport>().relaxed;
-    return relaxed ? relaxed->estimated_error_pN : std::nullopt;
-}
-
-void copy_positions(World& world) {
-    const TorsionState& state = world.resource<TorsionState>();
-    if (state.positions.empty()) return;
-    std::vector<Vec3>& positions = world.write<AtomTable>().positions;
-    const ModelAtoms& atoms = model_atoms_of(world);
-    AdaptiveState* const adaptive = world.write_if<AdaptiveState>();
-    if (!adaptive || !atoms.in_table.empty()) {
-        put_in_table(model_of(world), atoms, state.positions, positions);
-        return;
-    }
-    AdaptiveStatics& statics = adaptive->statics;
-    if (!statics.is_built || adaptive->copied != statics.rebuilds) {
-        positions = state.positions;
-        adaptive->copied = statics.rebuilds;
-    } else {
-        for (std::size_t c = 0; c < statics.has_moved.size(); ++c) {
-            if (statics.has_moved[c] == 0) continue;
-            for (const std::uint32_t i : atoms_of(statics.clusters, c))
-                positions[i] = state.positions[i];
-        }
-    }
-    std::ranges::fill(statics.has_moved, std::uint8_t{0});
 }
 
 }  // namespace palpa

@@ -4,6 +4,7 @@
 #include "field/pair_field.h"
 #include "simulation/components.h"
 #include "simulation/resources.h"
+#include "statics/torsion_state.h"
 
 #include <cstdint>
 #include <span>
@@ -109,27 +110,5 @@ const ModelAtoms& model_atoms_of(const World& world) noexcept;
 
 // Positions of all atoms of the table; mobile ones as in the model with all joint angles 0.
 std::vector<Vec3> reference_positions(const World& world);
-
-// Number of degrees of freedom that can move now.
-std::size_t find_active_freedom(const World& world) noexcept;
-
-// Force on the mobile molecule that the hand moves, or on the hand's end of its spring, kcal/mol/Å.
-// Zero if it holds nothing or a rigid molecule outside of the mechanics; the same holds for the
-// next function.
-Vec3 find_force_on_held(const World& world, Entity hand) noexcept;
-// Force and torque about the origin on the molecule that the hand moves, from all other molecules.
-Vec6 find_pull_on_held(const World& world, Entity hand) noexcept;
-
-// The second-order model if everything mobile follows the hands by one; else null.
-const SecondOrder* find_second_order(const World& world) noexcept;
-
-// Energy of the mobile parts, kcal/mol, without constant terms and without the springs of clients.
-double find_energy(const World& world) noexcept;
-
-// The last error estimate of the force on the first hand, pN.
-std::optional<double> find_error_estimate(const World& world) noexcept;
-
-// Updates the positions in the table that the mechanics have changed since the last call.
-void copy_positions(World& world);
 
 }  // namespace palpa

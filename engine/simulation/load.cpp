@@ -18,9 +18,9 @@
 #include "simulation/molecules.h"
 #include "simulation/named_parts.h"
 #include "simulation/probe.h"
-#include "simulation/remote_engine.h"
 #include "simulation/select_in_world.h"
 #include "simulation/solvent.h"
+#include "simulation/solver.h"
 #include "simulation/sources.h"
 #include "simulation/systems/publish_contact.h"
 
@@ -289,7 +289,7 @@ void start_hands(const SceneDescription& scene, World& world) {
             if (world.find<Grip>(hands[i])) function(scene, tables[i], hands[i], world);
     };
     for_full_hands(start_grabbed);
-    start_mechanics(world);
+    start_solver(world);
     for_full_hands(check_distance);
 }
 

@@ -5,9 +5,7 @@
 #include "simulation/coupling.h"
 #include "simulation/held.h"
 #include "simulation/region.h"
-#include "simulation/remote_engine.h"
-#include "simulation/solver_settings.h"
-#include "simulation/systems/choose_active.h"
+#include "simulation/solver.h"
 #include "simulation/systems/gather_springs.h"
 #include "simulation/systems/relax.h"
 
@@ -44,46 +42,25 @@ void set_mechanics(TorsionModel model, ModelAtoms atoms, std::span<const HeldPar
             grip.is_new ? find_centre_of_mass(model, part.spring->atoms, state.positions)
                         : Vec3(grip.anchor + grip.pose.place_angstrom);
     });
-    world.remove_resource<AdaptiveState>();
-    world.remove_resource<SecondOrder>();
-    world.remove_resource<ErrorEstimate>();
-    RelaxSettings settings = build_settings(world);
-    settings.method = find_method(world, model.coordinates);
-    if (settings.method == RelaxMethod::QuasiStatic)
-        world.set_resource(build_adaptive(settings, model, held, world));
-    world.set_resource(Solver{settings, build_quasi_statics(model)});
     world.set_resource(std::move(state));
     world.set_resource(Mechanics{std::make_shared<const TorsionModel>(std::move(model)),
                                  std::make_shared<const ModelAtoms>(std::move(atoms))});
-    gather_springs(world, {});
-    if (settings.method == RelaxMethod::SecondOrder) {
-        SecondOrder second =
-            build_second_order(world.resource<MechanicsSettings>().statics, settings, world);
-        if (const auto within_pN = world.resource<Coupling>().description.feel_within_pN)
-            second.settings.tolerance = *within_pN / units::piconewton_per_kcal_per_mol_angstrom;
-        world.set_resource(std::move(second));
-    } else if (model_of(world).coordinates <= most_second_order_coordinates) {
-        world.set_resource(build_error_estimate(
-            settings, world.resource<ForceFieldInUse>().description.solvent, world));
-    }
-    start_mechanics(world);
+    build_solver(held, world);
+    start_solver(world);
 }
 
 void clear_mechanics(World& world) {
     world.set_resource(Mechanics{});
     world.set_resource(TorsionState{});
     world.set_resource(GatheredSprings{});
-    world.remove_resource<Solver>();
-    world.remove_resource<AdaptiveState>();
-    world.remove_resource<SecondOrder>();
-    world.remove_resource<ErrorEstimate>();
+    world.set_resource(Solver{});
     world.write_each<Grip>([](Entity, Grip& grip) { grip.base = -1; });
 }
 
 }  // namespace
 
 bool needs_mechanics(const World& world) {
-    if (find_remote_engine(world)) return false;
+    if (!places_atoms(world)) return false;
     bool needs = false;
     world.each<Mobility>([&](Entity, const Mobility& mobility) {
         needs = needs || mobility.shape == Shape::Flexible || mobility.motion == Motion::Free ||
@@ -94,7 +71,7 @@ bool needs_mechanics(const World& world) {
 }
 
 void rebuild_mechanics(World& world) {
-    if (find_remote_engine(world)) return hold_engine_atoms(world);
+    if (!places_atoms(world)) return hold_engine_atoms(world);
     if (!needs_mechanics(world)) {
         clear_mechanics(world);
         return;
@@ -193,52 +170,11 @@ World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
     return world;
 }
 
-void start_mechanics(World& world) {
-    if (!has_mobile(world)) return;
-    const TorsionModel& model = model_of(world);
-    TorsionState& state = world.write<TorsionState>();
-    if (AdaptiveState* const adaptive = world.write_if<AdaptiveState>()) {
-        prepare_choice(world);
-        world.each<Grip>([&](Entity hand, const Grip& grip) {
-            if (grip.base >= 0 && holds_whole(world, hand))
-                adaptive->statics.is_guided[static_cast<std::size_t>(grip.base)] = 1;
-        });
-        // The first step reports what is not finite.
-        (void)update_adaptive_forces(model, adaptive->settings, state, adaptive->statics);
-        return;
-    }
-    Solver& solver = world.write<Solver>();
-    update_forces(model, solver.settings.step.forces, solver.statics.memory, state);
-    if (SecondOrder* const second = world.write_if<SecondOrder>())
-        start_second_order(model, second->settings, state, second->statics);
-}
-
 void move_held(World& world, const Vec3& by) {
     const Entity hand = first_hand(world);
     MoleculePose pose = grip_of(world, hand).pose;
     pose.place_angstrom = held_place(world, hand) + by - grip_of(world, hand).anchor;
     place_held(world, hand, pose);
-}
-
-RelaxStepReport relax_step(World& world) {
-    choose_active(world, {});
-    return relax_mobile(world, {});
-}
-
-void put_state(World& world, const TorsionState& state) {
-    world.write<TorsionState>() = state;
-    world.write<Solver>().statics.h = 0;
-    if (AdaptiveState* const adaptive = world.write_if<AdaptiveState>()) {
-        adaptive->statics = build_adaptive_statics(model_of(world));
-        adaptive->near_to.clear();
-    }
-    if (SecondOrder* const second = world.write_if<SecondOrder>()) {
-        HeldParts held = second->statics.renewals.lineariser.held;
-        second->statics = build_second_order_statics(model_of(world), std::move(held));
-    }
-    update_positions(model_of(world), world.write<TorsionState>());
-    return_ends(world);
-    start_mechanics(world);
 }
 
 HeldPart held_part(const World& world) {

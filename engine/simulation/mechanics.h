@@ -46,14 +46,7 @@ World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
 // Returns what the first hand holds.
 HeldPart held_part(const World& world);
 
-// For measurements outside of a step: the first hand moves what it holds, and mobile parts relax as
-// in one step.
+// For measurements outside of a step: the first hand moves what it holds.
 void move_held(World& world, const Vec3& by);
-RelaxStepReport relax_step(World& world);
-// Starts from another state without any history.
-void put_state(World& world, const TorsionState& state);
-
-// Computes the forces of the present state, from which steps start.
-void start_mechanics(World& world);
 
 }  // namespace palpa

@@ -92,45 +92,43 @@ Mat6 with_eigenvalues(const Mat6& matrix, F&& changed) {
 
 }  // namespace
 
-std::optional<RelaxedStiffness> find_relaxed_stiffness(const World& world, Entity hand) {
-    const SecondOrder* const second = find_second_order(world);
-    const std::optional<HandColumns> columns = second ? find_columns(*second, hand) : std::nullopt;
+std::optional<RelaxedStiffness> find_relaxed_stiffness(const World& world,
+                                                       const SecondOrder& second, Entity hand) {
+    const std::optional<HandColumns> columns = find_columns(second, hand);
     if (!columns) return {};
-    const LinearisedModel& linear = *second->statics.linear;
+    const LinearisedModel& linear = *second.statics.linear;
     const Mat3& free = grip_of(world, hand).projector;
     const Mat6 relaxed = stiffness_of(linear.relaxed_stiffness, *columns, free);
     const Mat6 frozen = stiffness_of(linear.frozen_stiffness, *columns, free);
     RelaxedStiffness result;
     result.matrix = scaled(bound_stiffness(relaxed, frozen, softest),
                            scales(arm_angstrom * units::metre_per_angstrom, 1));
-    const SecondOrderSettings& settings = second->settings;
+    const SecondOrderSettings& settings = second.settings;
     if (settings.renews_at_once) {  // within the step, also beyond the region
         result.reach_angstrom =
-            std::max(settings.farthest_hand - find_age(*second, *columns), settings.stride);
+            std::max(settings.farthest_hand - find_age(second, *columns), settings.stride);
     } else {
-        result.reach_angstrom = find_farthest_hand(settings, second->statics);
-        result.gone_angstrom = find_shift(*second, *columns);
+        result.reach_angstrom = find_farthest_hand(settings, second.statics);
+        result.gone_angstrom = find_shift(second, *columns);
     }
     return result;
 }
 
-Mat3 find_relaxed_coupling(const World& world, Entity hand, Entity other) {
-    const SecondOrder* const second = find_second_order(world);
-    if (!second) return Mat3::Zero();
-    const std::optional<HandColumns> own = find_columns(*second, hand);
-    const std::optional<HandColumns> others = find_columns(*second, other);
+Mat3 find_relaxed_coupling(const World& world, const SecondOrder& second, Entity hand,
+                           Entity other) {
+    const std::optional<HandColumns> own = find_columns(second, hand);
+    const std::optional<HandColumns> others = find_columns(second, other);
     if (!own || !others) return Mat3::Zero();
     const Mat3 coupling =
-        second->statics.linear->relaxed_stiffness.block<3, 3>(own->shift(), others->shift());
+        second.statics.linear->relaxed_stiffness.block<3, 3>(own->shift(), others->shift());
     return units::newton_per_metre_per_kcal_per_mol_angstrom2 * grip_of(world, hand).projector *
            coupling;
 }
 
-std::optional<FollowingAtoms> find_following(const World& world, Entity hand,
-                                             const LocalField& field,
+std::optional<FollowingAtoms> find_following(const World& world, const SecondOrder& second,
+                                             Entity hand, const LocalField& field,
                                              std::span<const std::uint32_t> environment) {
-    const SecondOrder* const second = find_second_order(world);
-    const std::optional<HandColumns> columns = second ? find_columns(*second, hand) : std::nullopt;
+    const std::optional<HandColumns> columns = find_columns(second, hand);
     if (!columns || columns->turns) return {};
     // What the model does not have is fixed.
     const auto responses = [&](std::span<const std::uint32_t> atoms) {
@@ -143,7 +141,7 @@ std::optional<FollowingAtoms> find_following(const World& world, Entity hand,
             places.push_back(i);
         }
         const std::vector<Mat3> found =
-            find_atom_responses(model_of(world), *second->statics.linear,
+            find_atom_responses(model_of(world), *second.statics.linear,
                                 world.resource<TorsionState>(), columns->shift(), known);
         std::vector<Mat3> moves(atoms.size(), Mat3::Zero());
         for (std::size_t i = 0; i < found.size(); ++i)
@@ -158,7 +156,7 @@ std::optional<FollowingAtoms> find_following(const World& world, Entity hand,
         for (const Mat3& move : *moves) farthest = std::max(farthest, move.norm());
     }
     // Not farther for fast hands: atoms that follow linearly so far come on each other.
-    following.reach_angstrom = second->settings.farthest / farthest;
+    following.reach_angstrom = second.settings.farthest / farthest;
     following.memory = build_following_memory(field.frozen);
     following.there = evaluate_following_field(field.frozen, field.group, following.points,
                                                Vec3::Zero(), following.memory);

@@ -4,6 +4,7 @@
 #include "haptics/local_field.h"
 #include "math/spatial.h"
 #include "math/vec.h"
+#include "simulation/second_order.h"
 
 #include <cstdint>
 #include <optional>
@@ -11,18 +12,20 @@
 
 namespace palpa {
 
-// The relaxed stiffness at a hand from the newest linearised model, bounded as below. Nothing
-// without second order.
-std::optional<RelaxedStiffness> find_relaxed_stiffness(const World& world, Entity hand);
+// The relaxed stiffness at a hand from the linearised model, which must exist, bounded as below.
+// Nothing for a hand that the model does not have.
+std::optional<RelaxedStiffness> find_relaxed_stiffness(const World& world,
+                                                       const SecondOrder& second, Entity hand);
 
 // -d(force on what the hand holds)/d(position of what the other hand holds), N/m, with everything
 // else following.
-Mat3 find_relaxed_coupling(const World& world, Entity hand, Entity other);
+Mat3 find_relaxed_coupling(const World& world, const SecondOrder& second, Entity hand,
+                           Entity other);
 
 // How the held atoms and the environment of `field` follow the hand's displacement; nothing if the
-// handle turns what it holds, or without second order.
-std::optional<FollowingAtoms> find_following(const World& world, Entity hand,
-                                             const LocalField& field,
+// handle turns what it holds.
+std::optional<FollowingAtoms> find_following(const World& world, const SecondOrder& second,
+                                             Entity hand, const LocalField& field,
                                              std::span<const std::uint32_t> environment);
 
 // Bounds the relaxed stiffness that the servo gets. At a snap it would go to minus infinity, and no

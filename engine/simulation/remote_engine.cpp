@@ -12,6 +12,7 @@
 #include "scene/find_scene.h"
 #include "simulation/held.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 #include "simulation/sources.h"
 #include "simulation/systems/gather_springs.h"
 
@@ -262,6 +263,30 @@ void note_frame(RemoteEngine& engine, double time_s) {
     engine.lost_at_s.reset();
 }
 
+// The advice for an engine that does not send.
+std::string advise(const RemoteEngine& engine) {
+    const std::string usual = "expected an engine that listens there and sends frames";
+    switch (engine.client->lack()) {
+        case ImdLack::Answer:
+            // It was there before.
+            if (engine.frames > 0) return usual;
+            return usual + ": start it first, or wait longer (engine.wait_s)";
+        case ImdLack::Handshake:
+            return "another client may be connected; expected a free engine (LAMMPS accepts one "
+                   "client at a time, and ends when a client gives up)";
+        case ImdLack::Frame:
+            return "expected frames: wait longer (engine.wait_s)";
+        case ImdLack::Version:
+            return "leave engine.protocol out to take any";
+        case ImdLack::Atoms:
+            return fmt::format(
+                "{} lists {} atoms, the engine sends {}: give the structure of what it sends",
+                engine.listed_in, engine.atoms->in_table.size(), engine.client->other_atoms());
+        default:
+            return usual;
+    }
+}
+
 }  // namespace
 
 EngineSpring find_engine_spring(double k, const Vec3& stretch, double most) noexcept {
@@ -274,7 +299,7 @@ EngineSpring find_engine_spring(double k, const Vec3& stretch, double most) noex
 EngineSpring find_engine_spring(const World& world, Entity hand) noexcept {
     const EngineHold& hold = *world.find<EngineHold>(hand);
     if (!hold.is_live) return {};
-    const double most = 1e-9 * world.resource<RemoteEngine>().settings.most_force_nN /
+    const double most = 1e-9 * find_solver<RemoteEngine>(world)->settings.most_force_nN /
                         units::newton_per_kcal_per_mol_angstrom;
     return find_engine_spring(world.find<Spring>(hand)->k, hold.smoothed - held_place(world, hand),
                               most);
@@ -365,7 +390,7 @@ void set_remote_engine(const SceneDescription& scene, World& world) {
     engine.listed_in = find_list_of_atoms(scene);
     engine.client =
         std::make_shared<ImdClient>(client_options(scene, engine.atoms->in_table.size()));
-    world.set_resource(std::move(engine));
+    world.set_resource(Solver{std::move(engine)});
 }
 
 void hold_engine_atoms(World& world) {
@@ -393,8 +418,15 @@ void hold_engine_atoms(World& world) {
     gather_springs(world, {});
 }
 
-bool take_newest_frame(World& world) {
-    RemoteEngine& engine = world.write<RemoteEngine>();
+void carry_engine(const World& from, World& to) {
+    const RemoteEngine* const engine = find_solver<RemoteEngine>(from);
+    if (!engine) return;
+    to.set_resource(Solver{*engine});
+    to.write<AtomTable>().positions = from.resource<AtomTable>().positions;
+    to.write_each<EngineHold>([](Entity, EngineHold& hold) { hold.is_live = false; });
+}
+
+bool take_newest_frame(World& world, RemoteEngine& engine) {
     ImdClient& client = *engine.client;
     const double begin = wall_clock_s();
     if (client.state() == ImdState::Closed) client.connect(begin);
@@ -433,41 +465,17 @@ bool lacks_coordinates(const SceneDescription& scene) {
            });
 }
 
-void await_engine(World& world) {
-    RemoteEngine& engine = world.write<RemoteEngine>();
+void await_engine(World& world, RemoteEngine& engine) {
     const bool before = std::exchange(engine.is_awaited, true);
-    const bool came = take_newest_frame(world);
+    const bool came = take_newest_frame(world, engine);
     engine.is_awaited = before;
     if (came) return;
     throw EngineLost({"engine " + engine.settings.address},
                      engine.client->why() + "; " + advise(engine));
 }
 
-std::string advise(const RemoteEngine& engine) {
-    const std::string usual = "expected an engine that listens there and sends frames";
-    switch (engine.client->lack()) {
-        case ImdLack::Answer:
-            // It was there before.
-            if (engine.frames > 0) return usual;
-            return usual + ": start it first, or wait longer (engine.wait_s)";
-        case ImdLack::Handshake:
-            return "another client may be connected; expected a free engine (LAMMPS accepts one "
-                   "client at a time, and ends when a client gives up)";
-        case ImdLack::Frame:
-            return "expected frames: wait longer (engine.wait_s)";
-        case ImdLack::Version:
-            return "leave engine.protocol out to take any";
-        case ImdLack::Atoms:
-            return fmt::format(
-                "{} lists {} atoms, the engine sends {}: give the structure of what it sends",
-                engine.listed_in, engine.atoms->in_table.size(), engine.client->other_atoms());
-        default:
-            return usual;
-    }
-}
-
 void leave_engine(World& world) {
-    RemoteEngine* const engine = world.write_if<RemoteEngine>();
+    RemoteEngine* const engine = write_solver<RemoteEngine>(world);
     if (!engine || engine->client->state() == ImdState::Closed) return;
     constexpr double most_s = 1;
     constexpr int slice_ms = 10;
@@ -480,33 +488,48 @@ void leave_engine(World& world) {
 }
 
 void pause_engine(World& world, bool is_paused) {
-    RemoteEngine* const engine = world.write_if<RemoteEngine>();
+    RemoteEngine* const engine = write_solver<RemoteEngine>(world);
     if (!engine) return;
     is_paused ? engine->client->pause() : engine->client->resume();
     engine->client->poll(wall_clock_s(), 0);
 }
 
-const RemoteEngine* find_remote_engine(const World& world) noexcept {
-    return world.find_resource<RemoteEngine>();
+void make_steps_wait(World& world) {
+    if (RemoteEngine* const engine = write_solver<RemoteEngine>(world)) engine->is_awaited = true;
+}
+
+double find_engine_energy(const World& world) noexcept {
+    const RemoteEngine* const engine = find_solver<RemoteEngine>(world);
+    const ImdFrame* const frame = engine ? engine->client->frame() : nullptr;
+    return frame && frame->energies ? frame->energies->potential : 0;
+}
+
+std::optional<EngineReport> report_engine(const World& world) {
+    const RemoteEngine* const engine = find_solver<RemoteEngine>(world);
+    if (!engine) return {};
+    const double interval = engine->frame_interval_s;
+    return EngineReport{
+        engine->frames,           engine->interruptions,  interval > 0 ? 1 / interval : 0,
+        find_engine_delay(world), describe_engine(world), advise(*engine)};
 }
 
 bool is_engine_gone(const World& world) noexcept {
     constexpr double give_up_s = 5;
-    const RemoteEngine* const engine = find_remote_engine(world);
+    const RemoteEngine* const engine = find_solver<RemoteEngine>(world);
     if (!engine || !engine->is_awaited || !engine->lost_at_s) return false;
     const double most = engine->frames == 0 ? 0 : give_up_s;
     return wall_clock_s() - *engine->lost_at_s > most;
 }
 
 double find_engine_delay(const World& world) noexcept {
-    const RemoteEngine* const engine = find_remote_engine(world);
+    const RemoteEngine* const engine = find_solver<RemoteEngine>(world);
     if (!engine) return 0;
     return world.resource<Clock>().period_s + engine->frame_interval_s +
            1e-3 * engine->settings.smoothing_ms;
 }
 
 std::string describe_engine(const World& world) {
-    const RemoteEngine* const engine = find_remote_engine(world);
+    const RemoteEngine* const engine = find_solver<RemoteEngine>(world);
     if (!engine) return {};
     const ImdClient& client = *engine->client;
     if (client.state() != ImdState::Connected) return client.why();

@@ -25,7 +25,7 @@ struct EngineAtoms {
         in_engine;  // for each atom of the table; atoms without an index do not move
 };
 
-// Resource of a world. Copies of a world share the connection.
+// The solver of such a world (simulation/solver.h). Copies of a world share the connection.
 struct RemoteEngine {
     EngineDescription settings;
     std::shared_ptr<const EngineAtoms> atoms;
@@ -73,22 +73,25 @@ AtomRange add_engine_atoms(const Source& source, AtomTable& table);
 // scene has.
 EngineAtoms find_engine_atoms(const SceneDescription& scene, const AtomTable& table);
 
-// Adds the resource to a world with molecules; does not connect yet.
+// Makes it the solver of a world with molecules; does not connect yet.
 void set_remote_engine(const SceneDescription& scene, World& world);
 
 // Rebuilds the springs of all hands from what they hold.
 void hold_engine_atoms(World& world);
 
+// Gives another world the engine, if there is one, and the positions that it sent.
+void carry_engine(const World& from, World& to);
+
 // Reads the newest frame, connecting first if needed. Waits for one if steps wait; false if none
 // has arrived.
-bool take_newest_frame(World& world);
+bool take_newest_frame(World& world, RemoteEngine& engine);
 
 // True if the positions come from the engine alone, because a molecule's structure is a PSF file;
 // until the first frame they are at the origin.
 bool lacks_coordinates(const SceneDescription& scene);
 
 // Waits for the first frame. Throws EngineLost.
-void await_engine(World& world);
+void await_engine(World& world, RemoteEngine& engine);
 
 class EngineLost : public LoadError {
 public:
@@ -101,10 +104,20 @@ void leave_engine(World& world);
 // Asks the engine to pause or to continue; does nothing without one.
 void pause_engine(World& world, bool is_paused);
 
-// Null where the world has none.
-const RemoteEngine* find_remote_engine(const World& world) noexcept;
-// The advice for an engine that does not send: "expected ..."
-std::string advise(const RemoteEngine& engine);
+// Makes steps wait for frames, for a run without a window.
+void make_steps_wait(World& world);
+// The newest frame's potential energy, kcal/mol; 0 without one.
+double find_engine_energy(const World& world) noexcept;
+
+// What a run says of its engine; nothing without one.
+struct EngineReport {
+    std::uint64_t frames = 0, interruptions = 0;  // frames received; times that they stopped
+    double frames_per_s = 0;                      // 0: unknown
+    double delay_s = 0;                           // see find_engine_delay
+    std::string state;                            // in one sentence
+    std::string advice;                           // where none comes: "expected ..."
+};
+std::optional<EngineReport> report_engine(const World& world);
 // True if a run without a window should end because no frame has arrived for long.
 bool is_engine_gone(const World& world) noexcept;
 // Delay from the atoms' motion to the force on the hand, s: step, frame and low-pass filter.

@@ -6,12 +6,9 @@
 #include "math/vec.h"
 #include "molecule/atoms.h"
 #include "scene/description.h"
-#include "simulation/accuracy_controller.h"
-#include "simulation/relax.h"
-#include "statics/adaptive_step.h"
 #include "statics/relax_joints.h"
-#include "statics/second_order_step.h"
-#include "statics/time_budget.h"
+#include "statics/relax_rigid.h"
+#include "statics/torsion_state.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -134,98 +131,6 @@ struct GatheredSprings {
     std::vector<Entity> entities;
 };
 
-// How mobile parts are relaxed.
-struct Solver {
-    RelaxSettings settings;  // for every step
-    QuasiStatics statics;
-
-    std::size_t count_bytes() const noexcept;
-};
-
-struct Ball {
-    Vec3 centre;  // Å
-    double radius;
-};
-
-// The part of an AdaptiveState that cannot be rebuilt from the world.
-struct AdaptivePlan {
-    AdaptiveSettings settings;
-    std::optional<TimeBudget> budget;
-    // If the scene sets an accuracy: the controller of the work.
-    std::optional<AccuracyController> accuracy;
-    // Before a step: the force rendered to the first hand at its present pose, kcal/mol/Å; nothing:
-    // use the step's own result.
-    std::optional<Vec3> rendered;
-    std::size_t choose_every = 0;  // steps between selections, from the scene
-    // Weight of each joint by what it moves; empty: all equal. Then whether parts near hands have
-    // more weight, and the regions found last.
-    std::vector<double> mobility_weights;
-    bool weighs_hand_proximity = false;
-    std::vector<Ball> near_to;  // region around each hand
-};
-
-// If not everything is active at a time, or the scene sets an accuracy.
-struct AdaptiveState : AdaptivePlan {
-    AdaptiveStatics statics;
-    std::size_t copied = 0;     // number of cluster rebuilds at the last full copy of positions
-    bool lacks_caches = false;  // all of `statics` but its step length, guides and counters
-
-    AdaptiveState without_caches() const;
-    std::size_t count_bytes() const noexcept;
-};
-
-// If steps do not relax everything: the difference between the force on the first hand and that of
-// complete relaxation, estimated on a copy now and then.
-struct ErrorEstimate {
-    SecondOrderSettings settings;
-    HeldParts held;
-    std::optional<RenewalMemory> memory;  // set by the first estimate
-    std::size_t steps = 0;                // step of the simulation
-    std::optional<double> last_pN;
-    Vec3 felt_pN = Vec3::Zero();  // force at that time
-    std::size_t evaluations = 0;  // number of evaluations used
-
-    ErrorEstimate without_caches() const;
-};
-
-// A renewal that releases more energy than this (kcal/mol) is a snap: a minimum had vanished.
-inline constexpr double least_snap = 1;
-
-// The part of a SecondOrder that cannot be rebuilt from the world.
-struct SecondOrderPlan {
-    SecondOrderSettings settings;
-    std::vector<Entity> hands;  // in the order of the statics
-
-    // Delay until a pending renewal is used: a declared time, or until the step's input says so.
-    // Steps use the old model meanwhile.
-    std::optional<double> delay_s;
-    std::uint64_t due = 0;  // step of the clock, with a declared delay
-
-    // In real time without a declared delay: as many model evaluations per step as fit into most of
-    // the period, from the wall time of the last ones.
-    std::size_t most_evaluations = 0;
-    double evaluation_us = 0;
-
-    // The last snap: energy released by the renewals (kcal/mol), the atom that moved farthest, and
-    // the step of the clock.
-    struct Snap {
-        std::uint32_t atom = 0;
-        double released = 0;
-        std::uint64_t step = 0;
-    };
-    std::optional<Snap> snap;
-};
-
-// State of second-order steps.
-struct SecondOrder : SecondOrderPlan {
-    SecondOrderStatics statics;
-    bool lacks_caches = false;  // all of `statics` but what hands hold
-
-    // Another thread may be making the pending renewal meanwhile.
-    SecondOrder without_caches() const;
-    std::size_t count_bytes() const noexcept;
-};
-
 // How the scene was relaxed at loading.
 struct StartReport {
     std::optional<RelaxReport> rigid;                // the held molecule, if rigid in space
@@ -272,8 +177,5 @@ struct StepReport {
     bool finite = true;
     double took_us = 0;  // wall time
 };
-
-// Rebuilds the caches of the mechanics after a transaction that was rolled back.
-void restore_caches(World& world) noexcept;
 
 }  // namespace palpa

@@ -2,10 +2,8 @@
 
 #include "simulation/components.h"
 #include "simulation/mechanics.h"
-#include "simulation/observe.h"
 #include "simulation/playback.h"
-#include "simulation/systems/choose_active.h"
-#include "simulation/systems/follow_engine.h"
+#include "simulation/solver.h"
 #include "simulation/systems/follow_hands.h"
 #include "simulation/systems/gather_springs.h"
 #include "simulation/systems/measure.h"
@@ -28,9 +26,7 @@ constexpr System systems[] = {
     follow_hands,     // device poses to poses of what is held, and ends of springs
     pull_by_clients,  // forces of clients to ends of springs
     gather_springs,   // springs of all owners to the mechanics
-    choose_active,    // which joints and bases move
-    relax,            // these towards rest
-    follow_engine,    // or all atoms where a remote engine has them
+    relax,            // joints and bases towards rest, or all atoms to where an engine has them
     publish_contact,  // a contact model for every hand
     measure,          // what can be read
 };
@@ -60,7 +56,7 @@ const StepReport& step_world(World& world, const StepInput& input) noexcept {
     }
     world.begin();
     world.set_resource(StepReport{});
-    note_rendered_force(world, input);
+    before_step(world, input);
     for (const System system : systems) {
         system(world, input);
         if (!world.resource<StepReport>().finite) break;
@@ -72,7 +68,7 @@ const StepReport& step_world(World& world, const StepInput& input) noexcept {
         if (input.await_renewal) input.await_renewal();
         go_back(world);
     }
-    estimate_error(world);
+    after_step(world);
     const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
     world.write<StepReport>().took_us = input.took_us.value_or(took.count());
     note_time(world);

@@ -241,4 +241,19 @@ void take_over(TorsionState& from, TorsionState& to) noexcept {
     std::swap(to.coordinate_forces, from.coordinate_forces);
 }
 
+Vec3 find_force_on_held(const TorsionModel& model, const TorsionState& state,
+                        const HeldInState& held) noexcept {
+    if (held.spring >= 0) {
+        const ModelSpring& spring = state.springs[static_cast<std::size_t>(held.spring)];
+        return find_spring_force(model, spring, state.positions);
+    }
+    // What atoms of the molecule do to each other adds up to nothing.
+    Vec3 force = Vec3::Zero();
+    for (std::size_t i = 0; i < state.forces.size(); ++i) {
+        if (model.tree.molecule_of[model.tree.bodies.body_of[i]] == held.base)
+            force += state.forces[i];
+    }
+    return force;
+}
+
 }  // namespace palpa

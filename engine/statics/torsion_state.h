@@ -109,4 +109,14 @@ void swap_coordinates(TorsionState& a, TorsionState& b) noexcept;
 // Swaps energies, forces and coordinate forces as well.
 void take_over(TorsionState& from, TorsionState& to) noexcept;
 
+// The part of a state that a hand holds: a molecule of the torsion model, or a spring by its index.
+struct HeldInState {
+    std::uint32_t base = 0;
+    std::int32_t spring = -1;  // -1: none
+};
+
+// The force on the molecule, or on the hand's end of its spring; the state must have all forces.
+Vec3 find_force_on_held(const TorsionModel& model, const TorsionState& state,
+                        const HeldInState& held) noexcept;
+
 }  // namespace palpa

@@ -6,6 +6,7 @@
 #include "simulation/components.h"
 #include "simulation/held.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 #include "statics/joint_answers.h"
 #include "statics/torsion_state.h"
 #include "view/colour_scales.h"
@@ -139,22 +140,10 @@ Colours colour_pushes(const World& world) {
     return colours;
 }
 
-constexpr double most_turn_deg = 30;
 constexpr double least_answer_deg = 0.001, most_answer_deg = 1;  // logarithmic
 
-// What activity shows of a world.
-enum class ShownActivity { Nothing, Turned, Active, BeyondFirstOrder };
-
-ShownActivity shown_activity(const World& world) {
-    if (world.find_resource<AdaptiveState>()) return ShownActivity::Active;
-    if (world.find_resource<SecondOrder>()) return ShownActivity::BeyondFirstOrder;
-    const TorsionState* const state = world.find_resource<TorsionState>();
-    return state && !state->angles.empty() ? ShownActivity::Turned : ShownActivity::Nothing;
-}
-
 // Of each atom what its body has; 0 of those that are in none.
-template <class Value>
-std::vector<double> of_atoms(const World& world, std::span<const Value> of_bodies) {
+std::vector<double> of_atoms(const World& world, std::span<const double> of_bodies) {
     std::vector<double> values(world.resource<AtomTable>().size(), 0);
     const std::vector<std::uint32_t>& body_of = model_of(world).tree.bodies.body_of;
     for (std::uint32_t atom = 0; atom < body_of.size(); ++atom) {
@@ -162,17 +151,6 @@ std::vector<double> of_atoms(const World& world, std::span<const Value> of_bodie
             values[model_atoms_of(world).number_in_table(atom)] = of_bodies[body_of[atom]];
     }
     return values;
-}
-
-Colours colour_turns(const World& world) {
-    const TorsionState* const state = world.find_resource<TorsionState>();
-    std::vector<double> turned_deg;
-    if (state) {
-        for (const double angle : state->angles)
-            turned_deg.push_back(degrees_per_radian *
-                                 std::abs(std::remainder(angle, 2 * std::numbers::pi)));
-    }
-    return colour_scale(of_atoms<double>(world, turned_deg), 0, most_turn_deg);
 }
 
 // Of each atom, by the size of its joint's angle (rad).
@@ -186,30 +164,22 @@ Colours colour_answers(const World& world, std::span<const double> angles) {
 }
 
 Colours colour_activity(const World& world) {
-    switch (shown_activity(world)) {
-        case ShownActivity::BeyondFirstOrder:
-            return colour_answers(
-                world, find_beyond_first_order(model_of(world),
-                                               world.find_resource<SecondOrder>()->statics));
-        case ShownActivity::Active:
-            return colour_scale(
-                of_atoms<std::uint8_t>(
-                    world, world.find_resource<AdaptiveState>()->statics.selection.is_active),
-                0, 1);
-        case ShownActivity::Nothing:
-            return Colours(world.resource<AtomTable>().size(), no_value);
-        case ShownActivity::Turned:
+    const std::vector<double> joints = find_joint_activity(world);
+    switch (joint_activity(world)) {
+        case JointActivity::BeyondFirstOrder:
+            return colour_answers(world, joints);
+        case JointActivity::Active:
+            return colour_scale(of_atoms(world, joints), 0, 1);
+        case JointActivity::Nothing:
             break;
     }
-    return colour_turns(world);
+    return Colours(world.resource<AtomTable>().size(), no_value);
 }
 
 Colours colour_errors(const World& world) {
-    const SecondOrder* const second = world.find_resource<SecondOrder>();
-    if (!second) return Colours(world.resource<AtomTable>().size(), no_value);
-    return colour_answers(world,
-                          estimate_joint_errors(model_of(world), second->settings,
-                                                world.resource<TorsionState>(), second->statics));
+    const std::optional<std::vector<double>> errors = estimate_joint_errors(world);
+    return errors ? colour_answers(world, *errors)
+                  : Colours(world.resource<AtomTable>().size(), no_value);
 }
 
 std::pair<double, double> find_b_factors(const AtomTable& atoms) {
@@ -334,21 +304,19 @@ std::vector<LegendEntry> find_legend(const World& world, Colouring colouring) {
         case Colouring::Force:
             return legend_of_scale("1 pN or less on the molecule in hand", "30 pN", "1 nN or more");
         case Colouring::Activity:
-            switch (shown_activity(world)) {
-                case ShownActivity::BeyondFirstOrder:
+            switch (joint_activity(world)) {
+                case JointActivity::BeyondFirstOrder:
                     return legend_of_scale("joint angle beyond first order: 0.001° or less",
                                            "0.03°", "1° or more");
-                case ShownActivity::Active:
+                case JointActivity::Active:
                     return {{sequential_colour(0), "joint or base at rest"},
                             {sequential_colour(1), "active now"}};
-                case ShownActivity::Nothing:
-                    return {{no_value, "no molecule has joints that can turn"}};
-                case ShownActivity::Turned:
+                case JointActivity::Nothing:
                     break;
             }
-            return legend_of_scale("joint not turned", "15°", "turned by 30° or more");
+            return {{no_value, "no molecule has joints that can turn"}};
         case Colouring::Error:
-            if (!world.find_resource<SecondOrder>())
+            if (joint_activity(world) != JointActivity::BeyondFirstOrder)
                 return {{no_value, "no estimate (only with the second-order method)"}};
             return legend_of_scale("estimated joint error: 0.001° or less", "0.03°", "1° or more");
     }

@@ -7,6 +7,7 @@
 #include "simulation/probe.h"
 #include "simulation/resources.h"
 #include "simulation/select_in_world.h"
+#include "simulation/solver.h"
 #include "simulation/systems/publish_contact.h"
 #include "view/atom_colours.h"
 #include "view/contact_pairs.h"
@@ -166,13 +167,13 @@ void add_signs(const World& world, Entity hand, const ContactModel& contact, Fra
 // For a second and a half, so that it can be read.
 void add_last_snap(const World& world, FrameScene& frame, std::vector<ViewLabel>& labels) {
     constexpr double shown_s = 1.5;
-    const SecondOrder* const second = world.find_resource<SecondOrder>();
-    if (!second || !second->snap) return;
+    const std::optional<Snap> snap = find_last_snap(world);
+    if (!snap) return;
     const Clock& clock = world.resource<Clock>();
-    const auto steps = static_cast<double>(clock.steps - second->snap->step);
+    const auto steps = static_cast<double>(clock.steps - snap->step);
     if (steps * clock.period_s > shown_s) return;
-    add_snap(as_float(world.resource<AtomTable>().positions[second->snap->atom]),
-             second->snap->released, frame, labels);
+    add_snap(as_float(world.resource<AtomTable>().positions[snap->atom]), snap->released, frame,
+             labels);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "simulation/probe.h"
 #include "simulation/remote_engine.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 #include "view/elements.h"
 #include "view/in_hand.h"
 #include "view/lines.h"
@@ -202,7 +203,7 @@ std::optional<Vec3> find_resting_place(const World& world, Entity hand) {
     constexpr std::size_t most_pairs = 2000;  // of which a search takes 0.1 s
     const Grip* const grip = world.find<Grip>(hand);
     const GrabSettings* const settings = world.find_resource<GrabSettings>();
-    if (!grip || !settings || find_remote_engine(world)) return std::nullopt;
+    if (!grip || !settings || !places_atoms(world)) return std::nullopt;
     const std::vector<Entity> hands = find_hands(world);
     const auto slot = static_cast<std::size_t>(std::ranges::find(hands, hand) - hands.begin());
     if (slot >= settings->start_offsets.size()) return std::nullopt;

@@ -10,6 +10,7 @@
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/probe.h"
+#include "simulation/solver.h"
 #include "simulation/step.h"
 #include "simulation/systems/follow_hands.h"
 #include "tests/hard/ways_of_stepping.h"
@@ -105,9 +106,7 @@ public:
 
     const SceneDescription& scene() const { return scene_; }
     const World& world() const { return world_; }
-    std::size_t sums_in_double() const {
-        return world().resource<Solver>().statics.memory.fast_pairs.in_double;
-    }
+    std::size_t sums_in_double() const { return count_forces(world()).in_double; }
 
 private:
     HandPose hand_pose() const {

@@ -1,4 +1,4 @@
-#include "simulation/accuracy_controller.h"
+#include "statics/accuracy_controller.h"
 
 #include "core/units.h"
 #include "scene/read_scene.h"
@@ -6,7 +6,7 @@
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
-#include "simulation/observe.h"
+#include "simulation/solver.h"
 #include "simulation/step.h"
 #include "tests/support/paths.h"
 
@@ -65,9 +65,9 @@ Played play(const std::vector<std::string>& settings) {
             played.errors_pN.push_back(*error_pN);
     }
     REQUIRE(has_mobile(world));
-    REQUIRE(world.find_resource<AdaptiveState>());
-    if (world.resource<AdaptiveState>().accuracy)
-        played.work_budget = world.resource<AdaptiveState>().accuracy->work_budget();
+    REQUIRE(find_solver<PaperStep>(world));
+    if (find_solver<PaperStep>(world)->accuracy)
+        played.work_budget = find_solver<PaperStep>(world)->accuracy->work_budget();
     played.positions = world.resource<AtomTable>().positions;
     played.true_error_pN =
         pico_per_kcal *
@@ -198,7 +198,7 @@ TEST_CASE("an error estimate is the difference from complete relaxation",
         add_restraint(few, {{"held:1", "held:4"}, {}, 30, 3});
         if (is_by_spring) take(few, first_hand(few), {"held:2"});
         move_held(few, (0.05 + 0.03 * i) * Vec3::Unit(i % 3));
-        (void)relax_step(few);
+        (void)relax_mobile(few, {}).value();
         const Vec3 felt = find_force_on_held(few, first_hand(few));
         find_error(few);
         const std::optional<double> found = find_error_estimate(few);

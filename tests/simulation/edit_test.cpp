@@ -11,6 +11,7 @@
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/molecules.h"
+#include "simulation/solver.h"
 #include "simulation/step.h"
 #include "tests/support/load_error_of.h"
 #include "tests/support/paths.h"
@@ -662,7 +663,7 @@ TEST_CASE(
     set_mobility(world, {"fixed", Motion::Free, {}});
     REQUIRE(grip_of(world, hand).freedom == 6);
     REQUIRE(grip_of(world, hand).base >= 0);
-    REQUIRE((world.find_resource<AdaptiveState>() != nullptr) == is_adaptive);
+    REQUIRE((find_solver<PaperStep>(world) != nullptr) == is_adaptive);
     const AtomRange held = held_range(world, hand);
     const std::vector<Vec3> before = world.resource<AtomTable>().positions;
     const MoleculePose start = grip_of(world, hand).pose;

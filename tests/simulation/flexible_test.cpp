@@ -12,6 +12,7 @@
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 #include "simulation/step.h"
 #include "simulation/systems/follow_hands.h"
 #include "tests/support/held_scene.h"
@@ -653,7 +654,7 @@ TEST_CASE("a joint counts the less the more atoms it moves, and the farther it i
     World world = load_peptides({"statics.active=8", "statics.choose_every=1"});
     (void)step_world(world, hand_at(Vec3(0.6, 0, 0)), local_contact_of(world).model);
     (void)step_world(world, hand_at(Vec3(1.2, 0, 0)), local_contact_of(world).model);
-    const std::vector<double>& factors = world.resource<AdaptiveState>().settings.factors;
+    const std::vector<double>& factors = find_solver<PaperStep>(world)->settings.factors;
     const std::vector<Body>& bodies = model_of(world).tree.bodies.bodies;
     const std::vector<std::array<std::uint32_t, 2>> bonds = connectivity_of(read_peptides()).bonds;
     // All that is bonded to k once the bond to j is cut: what the joint j -> k turns.
@@ -681,7 +682,7 @@ TEST_CASE("a joint counts the less the more atoms it moves, and the farther it i
         const double light = 1 / ((1 + n / 20) * (1 + n * n / 100));
         const double nearness = factors[b] / light;
         by_distance.emplace_back((world.resource<TorsionState>().positions[k] -
-                                  world.resource<AdaptiveState>().near_to.front().centre)
+                                  find_solver<PaperStep>(world)->near_to.front().centre)
                                      .norm(),
                                  nearness);
     }
@@ -702,13 +703,13 @@ TEST_CASE("a time budget that nothing has strained leaves joints to be chosen as
           "[simulation][flexible]") {
     World world =
         load_peptides({"statics.active=8", "statics.choose_every=12", "statics.budget_us=1000000"});
-    REQUIRE(world.resource<AdaptiveState>().budget);
+    REQUIRE(find_solver<PaperStep>(world)->budget);
     move_held(world, Vec3(0.1, 0, 0));
     int choices = 0;
-    for (int i = 0; i < 8; ++i) choices += relax_step(world).is_chosen ? 1 : 0;
+    for (int i = 0; i < 8; ++i) choices += relax_mobile(world, {}).value().is_chosen ? 1 : 0;
 
     // Three of the paper's steps are in each: there is a choice in every fourth.
     CHECK(choices >= 1);
 
-    CHECK(world.resource<AdaptiveState>().settings.choose_every == 12);
+    CHECK(find_solver<PaperStep>(world)->settings.choose_every == 12);
 }

@@ -1,6 +1,7 @@
 #include "simulation/held.h"
 
 #include "simulation/probe.h"
+#include "simulation/solver.h"
 #include "tests/support/held_scene.h"
 
 #include <catch2/catch.hpp>

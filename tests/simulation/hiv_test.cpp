@@ -9,9 +9,9 @@
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
-#include "simulation/relax.h"
 #include "simulation/step.h"
 #include "simulation/systems/publish_contact.h"
+#include "statics/relax_rigid.h"
 #include "tests/support/held_scene.h"
 #include "tests/support/paths.h"
 

@@ -1,6 +1,7 @@
 // Forces of clients, against Hooke's law of the springs that hold what they pull.
 #include "simulation/systems/pull_by_clients.h"
 #include "session/undo_history.h"
+#include "simulation/solver.h"
 
 #include "core/units.h"
 #include "simulation/client_pull.h"

@@ -11,6 +11,7 @@
 #include "simulation/mechanics.h"
 #include "simulation/molecules.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 #include "simulation/step.h"
 #include "statics/second_order_step.h"
 #include "tests/support/load_error_of.h"
@@ -349,7 +350,7 @@ TEST_CASE("where no other region can be had the old one goes on", "[simulation][
     world.write<MechanicsSettings>().joints.turn = {"B 999 CB CG"};
     for (int i = 0; i < 40; ++i) pull(world, Vec3(0.25, 0, 0));
     CHECK(model_atoms_of(world).in_table == first);
-    REQUIRE(world.find_resource<SecondOrder>() != nullptr);
+    REQUIRE(find_solver<SecondOrder>(world) != nullptr);
     const std::vector<Vec3> before = positions_of(world);
     pull(world, Vec3(0.1, 0, 0));
     CHECK_FALSE(moved_atoms(before, positions_of(world)).empty());

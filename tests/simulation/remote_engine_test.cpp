@@ -7,6 +7,7 @@
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 #include "tests/support/load_error_of.h"
 #include "tests/support/temporary_folder.h"
 
@@ -112,7 +113,7 @@ TEST_CASE("an engine's atoms are found by number", "[simulation][engine]") {
     std::ofstream(folder.path() / "sent.ndx") << "[ sent ]\n7 1 2 3\n";
     const World world = load(folder.path(), scene_text("atoms = \"sent.ndx\"\n", "#4"));
 
-    const EngineAtoms& atoms = *world.resource<RemoteEngine>().atoms;
+    const EngineAtoms& atoms = *find_solver<RemoteEngine>(world)->atoms;
     CHECK(atoms.in_table == std::vector<std::int32_t>{6, 0, 1, 2});
     CHECK(atoms.in_engine == std::vector<std::int32_t>{1, 2, 3, -1, -1, -1, 0});
     CHECK(world.find<EngineHold>(first_hand(world))->atoms == std::vector<std::uint32_t>{3});

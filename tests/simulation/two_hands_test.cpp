@@ -8,6 +8,7 @@
 #include "simulation/molecules.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 #include "simulation/step.h"
 #include "tests/support/load_error_of.h"
 #include "tests/support/paths.h"

@@ -3,6 +3,7 @@
 #include "haptics/gains.h"
 #include "simulation/held.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 
 #include <bit>
 #include <cstdint>
@@ -120,10 +121,9 @@ void add_mechanics(const World& world, Bytes& bytes) {
           << state.forces << state.energy();
     const TorsionModel& model = model_of(world);
     bytes << model.reference << model.masses << model.coordinates;
-    if (const Solver* const solver = world.find_resource<Solver>()) bytes << solver->statics.h;
-    if (const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>())
-        bytes << adaptive->statics.h << adaptive->statics.steps_since_choice
-              << adaptive->statics.selection.is_active;
+    if (const PaperStep* const paper = find_solver<PaperStep>(world))
+        bytes << paper->statics.h << paper->statics.steps_since_choice
+              << paper->statics.selection.is_active;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 #include "tests/support/gpu.h"
 #include "tests/support/held_scene.h"
 #include "tests/support/paths.h"
@@ -237,10 +238,10 @@ TEST_CASE("a snap is marked at its atom for a second and a half", "[view][signs]
         return places;
     };
     SecondOrder second;
-    world.set_resource(second);
+    world.set_resource(Solver{second});
     CHECK(marks_after(0).empty());
     second.snap = {4, 12.3, 100};
-    world.set_resource(second);
+    world.set_resource(Solver{second});
 
     const std::vector<glm::vec3> places = marks_after(1.4);
 

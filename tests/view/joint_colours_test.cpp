@@ -3,6 +3,7 @@
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 #include "simulation/step.h"
 #include "statics/joint_answers.h"
 #include "tests/support/paths.h"
@@ -61,7 +62,7 @@ std::size_t count_alike(const World& world, const std::vector<glm::vec3>& colour
 TEST_CASE("joints have the colours of what they add to the linear answer, and of their errors",
           "[view][colours][second-order]") {
     const World world = moved_peptide({"statics.method=\"second-order\""});
-    const SecondOrder& second = world.resource<SecondOrder>();
+    const SecondOrder& second = *find_solver<SecondOrder>(world);
     const TorsionModel& model = model_of(world);
     const std::size_t count = model.tree.bodies.body_of.size();
 
@@ -84,7 +85,7 @@ TEST_CASE("joints have the colours of what they add to the linear answer, and of
 TEST_CASE("where few joints are active these have another colour", "[view][colours][adaptive]") {
     const World world = moved_peptide({"statics.active=10"});
     const std::vector<std::uint8_t>& is_active =
-        world.resource<AdaptiveState>().statics.selection.is_active;
+        find_solver<PaperStep>(world)->statics.selection.is_active;
     const std::vector<std::uint32_t>& body_of = model_of(world).tree.bodies.body_of;
     const std::vector<glm::vec3> colours = find_colours(world, Colouring::Activity, {}, {});
     std::size_t active = 0;

@@ -10,6 +10,7 @@
 #include "session/run_headless.h"
 #include "simulation/held.h"
 #include "simulation/probe.h"
+#include "simulation/solver.h"
 
 #include <fmt/format.h>
 #include <cmath>
@@ -77,7 +78,7 @@ void print_mobile(const World& world, const JointRelaxReport& r) {
     const ContactModel start = local_contact_of(world).model;
     fmt::print("  start       {:.3f} kcal/mol, {:.3f} nN\n", start.potential_kcal_per_mol,
                start.force_newton.norm() * 1e9);
-    if (!world.find_resource<SecondOrder>()) fmt::print("  relaxation  {}\n", unrelaxed_note);
+    if (!follows_by_model(world)) fmt::print("  relaxation  {}\n", unrelaxed_note);
 }
 
 // How much of the handle's way a molecule takes where it is stiffest, along and across.

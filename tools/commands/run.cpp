@@ -15,6 +15,7 @@
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/remote_engine.h"
+#include "simulation/solver.h"
 #include "simulation/step.h"
 #include "simulation/systems/follow_engine.h"
 #include "tools/commands/command.h"
@@ -229,8 +230,7 @@ int run_without_window(SceneDescription scene, World& world,
     progress.wipe();
     const bool is_gone = is_engine_gone(world);
     const std::string engine =
-        is_gone ? describe_engine(world) + "; " + advise(*find_remote_engine(world))
-                : std::string();
+        is_gone ? describe_engine(world) + "; " + report_engine(world)->advice : std::string();
     leave_engine(world);
     if (noted_interrupt() != 0 || is_gone)
         scene.seconds = static_cast<double>(summary.ticks) / servo_rate_hz;
@@ -255,11 +255,7 @@ void await_first_frame(const SceneDescription& scene, World& world, const RunOpt
     if (!options.headless && !lacks_coordinates(scene)) return;
     tell(progress.stages(), "waiting for the engine's first frame");
     begin_with_engine(world);
-    if (options.headless) {
-        world.write<RemoteEngine>().is_awaited = true;
-    } else {
-        leave_engine(world);
-    }
+    options.headless ? make_steps_wait(world) : leave_engine(world);
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 #include "core/repeatable.h"
 #include "simulation/components.h"
 #include "simulation/held.h"
-#include "simulation/remote_engine.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 #include "simulation/systems/gather_springs.h"
 #include "simulation/systems/publish_contact.h"
 
@@ -32,9 +32,8 @@ void hold_anew(World& world, Entity hand, EngineHold& hold) {
     ++world.write<Contact>(hand)->answer.model.start;
 }
 
-void follow_atoms(World& world, Entity hand, bool is_live) {
+void follow_atoms(World& world, const RemoteEngine& engine, Entity hand, bool is_live) {
     EngineHold& hold = *world.write<EngineHold>(hand);
-    const RemoteEngine& engine = world.resource<RemoteEngine>();
     const Vec3 middle = find_middle(world.resource<AtomTable>(), hold);
     const bool has_jumped = (middle - hold.middle).norm() > farthest_move;
     hold.middle = middle;
@@ -57,8 +56,7 @@ struct AtomForce {
 };
 
 // Two hands may hold the same atoms.
-std::vector<AtomForce> list_forces(const World& world) {
-    const RemoteEngine& engine = world.resource<RemoteEngine>();
+std::vector<AtomForce> list_forces(const World& world, const RemoteEngine& engine) {
     std::vector<AtomForce> all, forces;
     world.each<EngineHold>([&](Entity hand, const EngineHold& hold) {
         if (!hold.is_live) return;
@@ -80,11 +78,10 @@ std::vector<AtomForce> list_forces(const World& world) {
 }
 
 // Where the engine cannot have them the hand feels nothing either.
-void send_forces(World& world) {
-    RemoteEngine& engine = world.write<RemoteEngine>();
+void send_forces(World& world, RemoteEngine& engine) {
     std::vector<std::int32_t> atoms;
     std::vector<Vec3> forces;
-    for (const AtomForce& next : list_forces(world)) {
+    for (const AtomForce& next : list_forces(world, engine)) {
         atoms.push_back(next.atom);
         forces.push_back(next.force);
     }
@@ -99,19 +96,19 @@ void send_forces(World& world) {
 
 }  // namespace
 
-void follow_engine(World& world, const StepInput& /*input*/) {
-    if (!world.find_resource<RemoteEngine>()) return;
-    take_newest_frame(world);
-    const bool is_live = world.resource<RemoteEngine>().client->state() == ImdState::Connected;
+void follow_engine(World& world, RemoteEngine& engine) {
+    take_newest_frame(world, engine);
+    const bool is_live = engine.client->state() == ImdState::Connected;
     for (const Entity hand : find_hands(world)) {
-        if (world.find<EngineHold>(hand)) follow_atoms(world, hand, is_live);
+        if (world.find<EngineHold>(hand)) follow_atoms(world, engine, hand, is_live);
     }
-    if (is_live) send_forces(world);
+    if (is_live) send_forces(world, engine);
 }
 
 void begin_with_engine(World& world) {
-    await_engine(world);
-    follow_engine(world, {});
+    RemoteEngine& engine = *write_solver<RemoteEngine>(world);
+    await_engine(world, engine);
+    follow_engine(world, engine);
     for (const Entity hand : find_hands(world)) {
         if (world.find<EngineHold>(hand)) update_contact(world, hand, {});
     }

@@ -1,7 +1,7 @@
 #include "simulation/systems/gather_springs.h"
 
 #include "simulation/held.h"
-#include "simulation/remote_engine.h"
+#include "simulation/solver.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -44,7 +44,7 @@ void gather_springs(World& world, const StepInput& /*input*/) {
     std::vector<Entity>& entities = world.write<GatheredSprings>().entities;
     springs.clear();
     entities.clear();
-    if (!has_mobile(world) && !find_remote_engine(world)) return;
+    if (!has_mobile(world) && places_atoms(world)) return;
     world.each<Spring>([&](Entity entity, const Spring& spring) {
         std::optional<ModelSpring> found = find_model_spring(world, model_atoms_of(world), spring);
         if (!found) return;

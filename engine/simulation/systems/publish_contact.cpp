@@ -2,9 +2,8 @@
 
 #include "core/units.h"
 #include "simulation/held.h"
-#include "simulation/relaxed_contact.h"
-#include "simulation/remote_engine.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +23,7 @@ constexpr std::size_t fewest_neighbours = 100;
 
 // Pairs that a servo tick has time for. Those that follow take twice the time.
 std::size_t most_pairs(const World& world) noexcept {
-    return world.resource<Coupling>().pairs_per_tick / (find_second_order(world) ? 2 : 1);
+    return world.resource<Coupling>().pairs_per_tick / (follows_by_model(world) ? 2 : 1);
 }
 
 // Atoms around what the hand holds that a tick has time for where every pair acts.
@@ -208,8 +207,7 @@ Pull find_pull_of(const World& world, const ModelSpring& spring) {
 // At a remote engine's atoms that of its low-passed middle; nothing while no frames come.
 Pull find_engine_pull(const World& world, Entity hand) {
     Pull pull;
-    const ImdFrame* const frame = world.resource<RemoteEngine>().client->frame();
-    if (frame && frame->energies) pull.energy = frame->energies->potential;
+    pull.energy = find_engine_energy(world);
     const EngineSpring spring = find_engine_spring(world, hand);
     pull.force = spring.force;
     pull.stiffness = spring.stiffness;

@@ -3,6 +3,7 @@
 #include "simulation/client_pull.h"
 #include "simulation/held.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 #include "simulation/systems/gather_springs.h"
 
 #include <algorithm>
@@ -64,7 +65,7 @@ void pull_by_clients(World& world, const StepInput& /*input*/) {
     std::size_t next = 0;
     const ClientPull* const pull = find_client_pull(world);
     if (pull && has_mobile(world)) {
-        const double slack = world.find_resource<SecondOrder>() ? 0.02 : 0;
+        const double slack = slack_of_springs(world);
         for (std::size_t i = 0; i < pull->atoms.size(); ++i) {
             const Vec3& force = pull->forces[i];
             const std::optional<std::uint32_t> atom = find_pulled_atom(world, pull->atoms[i]);

@@ -1,15 +1,12 @@
-// Relaxes mobile joints and bases on CHARMM forces.
+// Moves what moves by itself.
 #pragma once
 #include "ecs/world.h"
-#include "simulation/resources.h"
 #include "simulation/systems/step_input.h"
 
 namespace palpa {
 
-// Makes the solver's number of steps with the active joints and bases.
+// Makes the step of the world's solver (simulation/solver.h): mobile joints and bases move towards
+// rest on CHARMM forces, or all atoms to the newest frame of a remote engine.
 void relax(World& world, const StepInput& input);
-
-// The same, for measurements outside of a step.
-RelaxStepReport relax_mobile(World& world, const StepInput& input);
 
 }  // namespace palpa

@@ -3,6 +3,7 @@
 #include "simulation/components.h"
 #include "simulation/held.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 
 #include <cstddef>
 #include <functional>
@@ -37,12 +38,11 @@ constexpr Write writes[] = {
         state.angles[random() % state.angles.size()] += 1;
         state.positions[random() % state.positions.size()] += Vec3::Ones();
     },
-    [](World& world, std::mt19937&) { world.remove_resource<SecondOrder>(); },
+    [](World& world, std::mt19937&) { world.remove_resource<Solver>(); },
     [](World& world, std::mt19937&) {
-        if (SecondOrder* const second = world.write_if<SecondOrder>())
+        if (SecondOrder* const second = write_solver<SecondOrder>(world))
             second->statics.linear = nullptr;
-        if (AdaptiveState* const adaptive = world.write_if<AdaptiveState>())
-            adaptive->statics.h = 5;
+        if (PaperStep* const paper = write_solver<PaperStep>(world)) paper->statics.h = 5;
     },
     [](World& world, std::mt19937&) { world.set_resource(Clock{1, 2, 3}); },
     [](World& world, std::mt19937&) { world.write<Coupling>().pairs_per_tick = 1; },

@@ -3,6 +3,7 @@
 #include "core/units.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
+#include "simulation/solver.h"
 #include "tools/lab/bench/stroke.h"
 
 #include <fmt/format.h>
@@ -94,8 +95,8 @@ LocalEnd play_local(const BenchStart& start, const TorsionState& pose, World& wo
     const Vec3 before = find_force(world);
     move_held(world, local_move(start));
     LocalEnd end;
-    for (std::size_t i = 0; i < local_steps; i += world.resource<Solver>().settings.steps) {
-        end.neglected = relax_step(world).neglected;
+    for (std::size_t i = 0; i < local_steps; i += build_settings(world).steps) {
+        end.neglected = relax_mobile(world, {}).value().neglected;
     }
     end.change = find_force(world) - before;
     end.positions = world.resource<TorsionState>().positions;
@@ -131,7 +132,7 @@ std::vector<ReferencePose> build_poses(const BenchStart& start, int count) {
         while (std::abs(to - gone) > 1e-9) {
             const double step = std::clamp(to - gone, -long_stride, long_stride);
             move_held(guide, {step, 0, 0});
-            (void)relax_step(guide);
+            (void)relax_mobile(guide, {}).value();
             gone += step;
         }
         ReferencePose pose;
@@ -322,7 +323,7 @@ std::string bench_adaptive(const std::string& scene_name, const SceneDescription
     references.path = play_stroke(start, settings.stroke_moves, exact).forces;
     put(rest, exact);
     move_held(exact, {apart, 0, 0});
-    (void)relax_step(exact);
+    (void)relax_mobile(exact, {}).value();
     move_held(exact, {-apart, 0, 0});
     put(TorsionState(exact.resource<TorsionState>()), exact);
     const std::vector<double> floor =

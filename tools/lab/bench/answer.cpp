@@ -4,6 +4,7 @@
 #include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 #include "tools/lab/bench/real_time_way.h"
 #include "tools/lab/bench/stroke.h"
 #include "tools/lab/bench/truth.h"
@@ -42,7 +43,7 @@ Changes change_by_steps(World& world, const TorsionState& pose, const Vec3& by) 
     for (double us = 0; changes.empty() || us < 1e3 * times_ms.back();) {
         us += 1e6 * seconds_of([&] {
                   if (changes.empty()) move_held(world, by);
-                  (void)relax_step(world);
+                  (void)relax_mobile(world, {}).value();
               });
         changes.push_back({us, pN * find_force(world) - before});
     }
@@ -248,7 +249,7 @@ void bench_way(const std::string& name, const Way& way, const TorsionState& rest
         RelaxStepReport report;
         seconds += seconds_of([&] {
             move_held(world, step * way.direction);
-            report = relax_step(world);
+            report = relax_mobile(world, {}).value();
         });
         renewals += report.is_renewed ? 1 : 0;
         snaps += report.released > 1 ? 1 : 0;

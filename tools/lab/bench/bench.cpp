@@ -16,6 +16,7 @@
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
+#include "simulation/solver.h"
 #include "simulation/step.h"
 #include "simulation/systems/publish_contact.h"
 #include "tools/commands/command.h"
@@ -98,8 +99,7 @@ BenchRow bench_transaction(const std::string& scene_name, World world, double st
         (void)world.write_if<TorsionState>();
         (void)world.write_if<GatheredSprings>();
         (void)world.write_if<Clock>();
-        (void)world.write_if<AdaptiveState>();
-        (void)world.write_if<SecondOrder>();
+        (void)world.write_if<Solver>();
         world.write_each<Hand>([](Entity, const Hand&) {});
         world.write_each<Grip>([](Entity, const Grip&) {});
         world.write_each<Pose>([](Entity, const Pose&) {});

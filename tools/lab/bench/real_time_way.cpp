@@ -2,6 +2,7 @@
 
 #include "simulation/held.h"
 #include "simulation/load.h"
+#include "simulation/solver.h"
 #include "simulation/step.h"
 #include "statics/renewal_worker.h"
 
@@ -48,7 +49,7 @@ Played play(World& world) {
             step_world(world, {{&pose, 1},
                                {&felt, 1},
                                {},
-                               worker.is_ready(world.resource<SecondOrder>().statics),
+                               worker.is_ready(find_solver<SecondOrder>(world)->statics),
                                [&] { worker.await(); }});
         played.step_ms.push_back(1e-3 * report.took_us);
         played.ages.push_back(report.relaxed->model_age.value_or(0));
@@ -56,8 +57,8 @@ Played play(World& world) {
             next_place += spacing_angstrom;
             played.places.push_back({world.resource<TorsionState>(), pN * find_force(world)});
         }
-        SecondOrder& second = world.write<SecondOrder>();
-        worker.start_if_pending(model_of(world), second.settings, second.statics);
+        if (const std::optional<RenewalWork> work = find_renewal(world))
+            worker.start_if_pending(work->model, work->settings, work->statics);
         const Clock::time_point now = Clock::now();
         played.missed += now > due ? 1 : 0;
         due = std::max(due, now);  // late: the clock goes on from here

@@ -2,6 +2,7 @@
 #include "core/units.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
+#include "simulation/solver.h"
 #include "tools/lab/bench/adaptive.h"
 #include "tools/lab/bench/stroke.h"
 
@@ -17,8 +18,9 @@ constexpr double step = 2e-4;  // rad and Å
 using Pull = Eigen::VectorXd;
 
 Pull find_pull(World& world) {
-    update_forces(model_of(world), world.resource<Solver>().settings.step.forces,
-                  world.write<Solver>().statics.memory, world.write<TorsionState>());
+    ForceMemory memory;
+    update_forces(model_of(world), build_settings(world).step.forces, memory,
+                  world.write<TorsionState>());
     update_coordinate_forces(model_of(world), world.write<TorsionState>());
     const TorsionState state = world.resource<TorsionState>();
     put(state, world);

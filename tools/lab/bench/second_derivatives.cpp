@@ -2,6 +2,7 @@
 
 #include "simulation/held.h"
 #include "simulation/mechanics.h"
+#include "simulation/solver.h"
 #include "statics/fast_second_derivatives.h"
 #include "statics/hessian_product.h"
 #include "statics/relax_joints.h"
@@ -32,7 +33,7 @@ struct AtRest {
 AtRest find_rest(const World& start) {
     AtRest rest{model_of(start), start.resource<TorsionState>(), {}};
     RelaxSettings settings;
-    settings.step.forces = start.resource<Solver>().settings.step.forces;
+    settings.step.forces = build_settings(start).step.forces;
     settings.force_tolerance = 0.1;
     QuasiStatics statics = build_quasi_statics(rest.model);
     (void)relax_joints(rest.model, settings, rest.state, statics);

@@ -2,6 +2,7 @@
 #include "core/text.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
+#include "simulation/solver.h"
 #include "tools/lab/bench/adaptive.h"
 #include "tools/lab/bench/cut_sphere.h"
 #include "tools/lab/bench/held_model.h"
@@ -58,8 +59,8 @@ World build_sphere(const SceneDescription& scene, const CutSystem& sphere, const
 
 StrokeResult time_sphere(const BenchStart& start, std::size_t active, int moves) {
     World world = start.world;
-    if (AdaptiveState* const adaptive = world.write_if<AdaptiveState>())
-        adaptive->settings.limits.degrees_of_freedom = active;
+    if (PaperStep* const paper = write_solver<PaperStep>(world))
+        paper->settings.limits.degrees_of_freedom = active;
     return time_stroke(start, start.world.resource<TorsionState>(), moves, world);
 }
 

@@ -5,6 +5,7 @@
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/probe.h"
+#include "simulation/solver.h"
 #include "simulation/step.h"
 #include "tools/lab/bench/second_derivatives.h"
 #include "tools/lab/bench/steppers.h"
@@ -26,32 +27,30 @@ void bench_method(const std::string& scene_name, World world, RelaxMethod method
     move_held(world, Vec3(shift, 0, 0));
     RelaxSettings settings;
     settings.method = method;
-    settings.step.forces = world.resource<Solver>().settings.step.forces;
+    settings.step.forces = build_settings(world).step.forces;
     settings.steps = most_steps;
     settings.force_tolerance = levels.back();
     const char* const name = method == RelaxMethod::QuasiStatic ? "quasi-static" : "l-bfgs";
     std::size_t level = 0;
-    const std::size_t before = world.resource<Solver>().statics.memory.evaluations;
+    QuasiStatics statics = build_quasi_statics(model_of(world));
     const auto begin = std::chrono::steady_clock::now();
     const auto seconds = [&] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     };
     const auto reached = [&](std::size_t steps, double energy, double rms) {
         for (; level < levels.size() && rms <= levels[level]; ++level) {
-            rows.push_back(
-                {fmt::format("statics/{}/{}/rms={}", scene_name, name, levels[level]),
-                 {1e3 * seconds()},
-                 "ms",
-                 {},
-                 "",
-                 fmt::format("{} steps, {} evaluations, {:.2f} kcal/mol", steps,
-                             world.resource<Solver>().statics.memory.evaluations - before,
-                             energy)});
+            rows.push_back({fmt::format("statics/{}/{}/rms={}", scene_name, name, levels[level]),
+                            {1e3 * seconds()},
+                            "ms",
+                            {},
+                            "",
+                            fmt::format("{} steps, {} evaluations, {:.2f} kcal/mol", steps,
+                                        statics.memory.evaluations, energy)});
         }
     };
     const JointRelaxReport report =
-        relax_joints(model_of(world), settings, world.write<TorsionState>(),
-                     world.write<Solver>().statics, [&](const RelaxProgress& progress) {
+        relax_joints(model_of(world), settings, world.write<TorsionState>(), statics,
+                     [&](const RelaxProgress& progress) {
                          reached(progress.step, progress.energy, progress.rms_force);
                          return true;
                      });
@@ -84,7 +83,7 @@ void bench_region(const std::string& scene_name, SceneDescription scene,
     HandPose hand;
     const std::string reference =
         fmt::format("{} joints, {} tiles", world.resource<StartReport>().joints,
-                    world.resource<Solver>().statics.memory.fast_pairs.list.plain.size());
+                    find_solver<PaperStep>(world)->statics.memory.fast_pairs.list.plain.size());
     const std::vector<double> samples = sample(21, 1e3, [&] {
         hand.travel_m.x() += 1e-6;
         (void)step_world(world, hand, felt);

@@ -2,6 +2,7 @@
 
 #include "simulation/held.h"
 #include "simulation/mechanics.h"
+#include "simulation/solver.h"
 #include "tools/lab/bench/stroke.h"
 
 #include <fmt/format.h>
@@ -95,7 +96,7 @@ void bench_pairs(const std::string& name, const Start& start, std::vector<BenchR
 
 void bench_steppers(const std::string& scene_name, const World& world,
                     std::vector<BenchRow>& rows) {
-    const RelaxSettings& settings = world.resource<Solver>().settings;
+    const RelaxSettings settings = build_settings(world);
     Start start{model_of(world), world.resource<TorsionState>(), settings.step, settings.steps,
                 held_part(world).base};
     for (const bool ends : {false, true}) {

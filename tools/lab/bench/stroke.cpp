@@ -5,6 +5,7 @@
 #include "core/units.h"
 #include "simulation/held.h"
 #include "simulation/load.h"
+#include "simulation/solver.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -18,12 +19,12 @@ namespace {
 constexpr double stride = 0.005;  // Å, of the hand along the stroke
 
 std::size_t count_backbone(const BenchStart& start, const World& world) {
-    const AdaptiveState* const adaptive = world.find_resource<AdaptiveState>();
+    const PaperStep* const paper = find_solver<PaperStep>(world);
     const TorsionBodies& bodies = model_of(world).tree.bodies;
     std::size_t count = 0;
     for (std::size_t b = 0; b < bodies.bodies.size(); ++b) {
         if (bodies.is_base(b) || !is_backbone(start.connectivity, bodies.bodies[b].axis)) continue;
-        if (!adaptive || adaptive->statics.selection.is_active[b] != 0) ++count;
+        if (!paper || paper->statics.selection.is_active[b] != 0) ++count;
     }
     return count;
 }
@@ -74,13 +75,13 @@ World build_variant(const BenchStart& start, const Variant& variant) {
 double relax(const BenchStart& start, RelaxMethod method, std::size_t steps, World& world) {
     RelaxSettings settings;
     settings.method = method;
-    Solver& solver = world.write<Solver>();
-    settings.step.forces = solver.settings.step.forces;
+    settings.step.forces = build_settings(world).step.forces;
     settings.force_tolerance = start.scene.statics.rest_kcal_per_mol;
     settings.steps = steps;
+    QuasiStatics statics = build_quasi_statics(model_of(world));
     const JointRelaxReport report =
-        relax_joints(model_of(world), settings, world.write<TorsionState>(), solver.statics);
-    start_mechanics(world);
+        relax_joints(model_of(world), settings, world.write<TorsionState>(), statics);
+    start_solver(world);
     return report.rms_force;
 }
 
@@ -119,7 +120,7 @@ StrokeResult play_stroke(const BenchStart& start, int moves, World& world) {
         RelaxStepReport report;
         const double us = 1e6 * seconds_of([&] {
                               move_held(world, {i < moves / 2 ? step : -step, 0, 0});
-                              report = relax_step(world);
+                              report = relax_mobile(world, {}).value();
                           });
         if (report.is_renewed) ++result.renewals;
         const bool is_ordinary = !report.is_chosen && !report.is_renewed;

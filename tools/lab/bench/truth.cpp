@@ -3,6 +3,7 @@
 #include "core/load_error.h"
 #include "simulation/held.h"
 #include "simulation/mechanics.h"
+#include "simulation/solver.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -157,7 +158,7 @@ Truths build_truths(const BenchStart& start) {
     const auto build = [&](std::optional<double> pairs_end) {
         const World world =
             build_mechanics_world(with_cutoff(scene, pairs_end), model, held_part(start.world));
-        return Truth(model, world.resource<SecondOrder>());
+        return Truth(model, *find_solver<SecondOrder>(world));
     };
     return {build({}), build(cutoff), cutoff};
 }

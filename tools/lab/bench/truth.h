@@ -3,6 +3,7 @@
 #pragma once
 #include "core/units.h"
 #include "simulation/resources.h"
+#include "simulation/second_order.h"
 #include "statics/second_order_step.h"
 #include "tools/lab/bench/stroke.h"
 #include "tools/lab/experiments/rest_poses.h"

@@ -13,6 +13,7 @@
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/probe.h"
+#include "simulation/solver.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -69,7 +70,7 @@ public:
         Vec3 before = Vec3::Zero();
         for (int i = 0; i < steps; ++i) {
             if (i == steps - last_steps) before = find_force_on_held(world_, first_hand(world_));
-            (void)relax_step(world_);
+            (void)relax_mobile(world_, {}).value();
         }
         const Vec3 force = find_force_on_held(world_, first_hand(world_));
         return {force, (force - before).norm()};

@@ -1,4 +1,4 @@
-#include "simulation/relax.h"
+#include "statics/relax_rigid.h"
 
 #include "math/minimiser.h"
 

@@ -1,7 +1,7 @@
 // Controls the work of a quasi-static step so that the force stays within a tolerance of complete
-// relaxation, by error estimates made now and then (simulation/observe.h).
+// relaxation, by error estimates made now and then (simulation/paper_step.h).
 #pragma once
-#include "statics/step_quasi_static.h"
+#include "math/vec.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -77,15 +77,5 @@ private:
     double estimate_work_ = 20;
     double rareness_ = 1;
 };
-
-// What a hand holds in a state: a molecule of the torsion model, or a spring by its index.
-struct HeldInState {
-    std::uint32_t base = 0;
-    std::int32_t spring = -1;  // -1: none
-};
-
-// The force on the molecule, or on the hand's end of its spring; the state must have all forces.
-Vec3 find_force_on_held(const TorsionModel& model, const TorsionState& state,
-                        const HeldInState& held) noexcept;
 
 }  // namespace palpa

@@ -1,4 +1,4 @@
-#include "simulation/accuracy_controller.h"
+#include "statics/accuracy_controller.h"
 
 #include <algorithm>
 #include <cmath>
@@ -108,21 +108,6 @@ void AccuracyController::lower() noexcept {
         work_budget_.active =
             std::max(least_active, work_budget_.active - (work_budget_.active + 4) / 5);
     }
-}
-
-Vec3 find_force_on_held(const TorsionModel& model, const TorsionState& state,
-                        const HeldInState& held) noexcept {
-    if (held.spring >= 0) {
-        const ModelSpring& spring = state.springs[static_cast<std::size_t>(held.spring)];
-        return find_spring_force(model, spring, state.positions);
-    }
-    // What atoms of the molecule do to each other adds up to nothing.
-    Vec3 force = Vec3::Zero();
-    for (std::size_t i = 0; i < state.forces.size(); ++i) {
-        if (model.tree.molecule_of[model.tree.bodies.body_of[i]] == held.base)
-            force += state.forces[i];
-    }
-    return force;
 }
 
 }  // namespace palpa
