@@ -23,16 +23,16 @@ struct Match : Cases... {
 // Calls the case of the world's solver; a rigid one is not written.
 template <class... Cases>
 auto match(const World& world, const Cases&... cases) {
-    static const Solver rigid;
+    const Match match{cases...};
     const Solver* const solver = world.find_resource<Solver>();
-    return std::visit(Match{cases...}, (solver ? *solver : rigid).kind);
+    return solver ? std::visit(match, solver->kind) : match(Rigid{});
 }
 template <class... Cases>
 auto match(World& world, const Cases&... cases) {
-    Solver rigid;
+    const Match match{cases...};
     const Solver* const solver = world.find_resource<Solver>();
     const bool is_rigid = !solver || std::holds_alternative<Rigid>(solver->kind);
-    return std::visit(Match{cases...}, (is_rigid ? rigid : world.write<Solver>()).kind);
+    return is_rigid ? match(Rigid{}) : std::visit(match, world.write<Solver>().kind);
 }
 
 // The second-order model in force; null without one.
