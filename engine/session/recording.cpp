@@ -566,10 +566,10 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
                               {"released_kcal_per_mol", r.released}};
     }
     if (summary.engine) {
-        const EngineSummary& e = *summary.engine;
+        const EngineReport& e = *summary.engine;
         json["engine"] = {{"frames", e.frames},
                           {"frames_per_s", e.frames_per_s},
-                          {"delay_ms", e.delay_ms},
+                          {"delay_ms", 1e3 * e.delay_s},
                           {"interruptions", e.interruptions},
                           {"state", e.state}};
     }

@@ -433,18 +433,6 @@ std::vector<std::string> list_neglected(const SceneDescription& scene, const Wor
     return neglected;
 }
 
-std::optional<EngineSummary> sum_up_engine(const World& world) {
-    const std::optional<EngineReport> engine = report_engine(world);
-    if (!engine) return {};
-    EngineSummary summary;
-    summary.frames = engine->frames;
-    summary.frames_per_s = engine->frames_per_s;
-    summary.delay_ms = 1e3 * engine->delay_s;
-    summary.interruptions = engine->interruptions;
-    summary.state = engine->state;
-    return summary;
-}
-
 // What a run gathers beside its recording.
 class RunLog {
 public:
@@ -488,7 +476,7 @@ public:
         }
         summary.accuracy = accuracy_.report(summary.step_median_us);
         if (unbinding_) summary.unbinding = unbinding_->unbinding();
-        summary.engine = sum_up_engine(world);
+        summary.engine = report_engine(world);
         if (!has_mobile(world)) return summary;
         // Where molecules make room for each other, one may well be on either side of another.
         constexpr double on_top = 1;  // Å

@@ -4,6 +4,7 @@
 #include "session/accuracy_report.h"
 #include "session/ripple.h"
 #include "session/unbinding_path.h"
+#include "simulation/remote_engine.h"
 
 #include <array>
 #include <cstdint>
@@ -36,15 +37,6 @@ struct RelaxationSummary {
     // energy that they released in total, kcal/mol.
     std::uint64_t snaps = 0;
     double released = 0;
-};
-
-// For a run moved by a remote engine.
-struct EngineSummary {
-    std::uint64_t frames = 0;         // frames received
-    double frames_per_s = 0;          // per second of wall time, near the end; 0: unknown
-    double delay_ms = 0;              // from the atoms' motion to the force on the hand
-    std::uint64_t interruptions = 0;  // number of times that frames stopped
-    std::string state;                // state at the end, a sentence
 };
 
 // The way of a hand's handle, without that under the clutch.
@@ -85,7 +77,7 @@ struct Summary {
     std::optional<UnbindingPath> unbinding;  // in space, if molecules move by themselves
     std::optional<Activity> activity;
     std::optional<RelaxationSummary> relaxation;
-    std::optional<EngineSummary> engine;
+    std::optional<EngineReport> engine;
     std::vector<std::string> neglected;      // interactions and motions that the model leaves out
     std::optional<AccuracyReport> accuracy;  // if the scene states what must be felt
     std::vector<std::string> warnings;

@@ -125,7 +125,7 @@ void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_rel
     });
     QuasiStatics statics = build_quasi_statics(loose);
     RelaxSettings to_rest;
-    to_rest.step.forces = build_settings(world).step.forces;
+    to_rest.step.forces = build_step_settings(world).forces;
     to_rest.force_tolerance = s.rest_kcal_per_mol;
     to_rest.steps = s.relaxes_start ? static_cast<std::size_t>(s.relax_steps) : 0;
     StartReport& report = world.write<StartReport>();

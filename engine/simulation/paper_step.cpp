@@ -178,12 +178,12 @@ std::size_t PaperStep::count_bytes() const noexcept {
     return per_atom * statics.across_forces.size();
 }
 
-PaperStep build_paper_step(const RelaxSettings& settings, const TorsionModel& model,
+PaperStep build_paper_step(const QuasiStaticSettings& settings, const TorsionModel& model,
                            std::span<const HeldPart> held, const World& world) {
     const StaticsDescription& s = world.resource<MechanicsSettings>().statics;
     PaperStep paper;
-    paper.settings = build_adaptive_settings(s, settings.step);
-    paper.steps = settings.steps;
+    paper.settings = build_adaptive_settings(s, settings);
+    paper.steps = static_cast<std::size_t>(s.steps);
     paper.statics = build_adaptive_statics(model);
     paper.weighs_hand_proximity = s.weights == JointWeights::HandProximity;
     if (paper.weighs_hand_proximity) {
@@ -196,17 +196,16 @@ PaperStep build_paper_step(const RelaxSettings& settings, const TorsionModel& mo
     if (s.budget_us) paper.budget.emplace(*s.budget_us);
     if (const auto within_pN = world.resource<Coupling>().description.feel_within_pN) {
         paper.accuracy.emplace(
-            *within_pN, WorkBudget{paper.settings.limits.degrees_of_freedom, settings.steps},
+            *within_pN, WorkBudget{paper.settings.limits.degrees_of_freedom, paper.steps},
             static_cast<std::size_t>(model.coordinates), paper.budget.has_value());
     }
     return paper;
 }
 
-ErrorEstimate build_error_estimate(const RelaxSettings& settings, Solvent solvent,
-                                   const World& world) {
+ErrorEstimate build_error_estimate(const QuasiStaticSettings& settings, const World& world) {
     ErrorEstimate estimate;
-    ForceSettings& forces = estimate.settings.forces = settings.step.forces;
-    if (solvent == Solvent::None) {
+    ForceSettings& forces = estimate.settings.forces = settings.forces;
+    if (world.resource<ForceFieldInUse>().description.solvent == Solvent::None) {
         const double coulomb = forces.nonbonded.coulomb_constant;
         forces.nonbonded = {};
         forces.nonbonded.coulomb_constant = coulomb;

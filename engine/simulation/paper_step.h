@@ -67,14 +67,13 @@ struct PaperStep : PaperPlan {
     std::size_t count_bytes() const noexcept;
 };
 
-PaperStep build_paper_step(const RelaxSettings& settings, const TorsionModel& model,
+PaperStep build_paper_step(const QuasiStaticSettings& settings, const TorsionModel& model,
                            std::span<const HeldPart> held, const World& world);
 // After the springs were gathered. Compares with all pairs, whatever cutoff the steps have; the
 // ends that go with a solvent are part of its energy.
-ErrorEstimate build_error_estimate(const RelaxSettings& settings, Solvent solvent,
-                                   const World& world);
+ErrorEstimate build_error_estimate(const QuasiStaticSettings& settings, const World& world);
 
-// What simulation/solver.h asks of every solver.
+// The functions that simulation/solver.h calls for every solver that relaxes.
 
 void start(World& world, PaperStep& paper);
 void restart(World& world, PaperStep& paper);

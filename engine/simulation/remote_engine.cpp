@@ -287,6 +287,16 @@ std::string advise(const RemoteEngine& engine) {
     }
 }
 
+// The delay from the atoms' motion to the force on the hand, s: step, frame and low-pass filter.
+double find_engine_delay(const World& world, const RemoteEngine& engine) noexcept {
+    return world.resource<Clock>().period_s + engine.frame_interval_s +
+           1e-3 * engine.settings.smoothing_ms;
+}
+
+double find_frame_rate(const RemoteEngine& engine) noexcept {
+    return engine.frame_interval_s > 0 ? 1 / engine.frame_interval_s : 0;
+}
+
 }  // namespace
 
 EngineSpring find_engine_spring(double k, const Vec3& stretch, double most) noexcept {
@@ -507,10 +517,9 @@ double find_engine_energy(const World& world) noexcept {
 std::optional<EngineReport> report_engine(const World& world) {
     const RemoteEngine* const engine = find_solver<RemoteEngine>(world);
     if (!engine) return {};
-    const double interval = engine->frame_interval_s;
-    return EngineReport{
-        engine->frames,           engine->interruptions,  interval > 0 ? 1 / interval : 0,
-        find_engine_delay(world), describe_engine(world), advise(*engine)};
+    return EngineReport{engine->frames,           engine->interruptions,
+                        find_frame_rate(*engine), find_engine_delay(world, *engine),
+                        describe_engine(world),   advise(*engine)};
 }
 
 bool is_engine_gone(const World& world) noexcept {
@@ -521,13 +530,6 @@ bool is_engine_gone(const World& world) noexcept {
     return wall_clock_s() - *engine->lost_at_s > most;
 }
 
-double find_engine_delay(const World& world) noexcept {
-    const RemoteEngine* const engine = find_solver<RemoteEngine>(world);
-    if (!engine) return 0;
-    return world.resource<Clock>().period_s + engine->frame_interval_s +
-           1e-3 * engine->settings.smoothing_ms;
-}
-
 std::string describe_engine(const World& world) {
     const RemoteEngine* const engine = find_solver<RemoteEngine>(world);
     if (!engine) return {};
@@ -535,9 +537,8 @@ std::string describe_engine(const World& world) {
     if (client.state() != ImdState::Connected) return client.why();
     if (!engine->refusal.empty()) return fmt::format("no force: {}", engine->refusal);
     return fmt::format("engine at {}: {:.0f} frames/s, force delayed by {:.0f} ms",
-                       engine->settings.address,
-                       engine->frame_interval_s > 0 ? 1 / engine->frame_interval_s : 0,
-                       1e3 * find_engine_delay(world));
+                       engine->settings.address, find_frame_rate(*engine),
+                       1e3 * find_engine_delay(world, *engine));
 }
 
 }  // namespace palpa

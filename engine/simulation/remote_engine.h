@@ -109,19 +109,17 @@ void make_steps_wait(World& world);
 // The newest frame's potential energy, kcal/mol; 0 without one.
 double find_engine_energy(const World& world) noexcept;
 
-// What a run says of its engine; nothing without one.
+// The engine's part in a run; report_engine gives nothing without one.
 struct EngineReport {
     std::uint64_t frames = 0, interruptions = 0;  // frames received; times that they stopped
     double frames_per_s = 0;                      // 0: unknown
-    double delay_s = 0;                           // see find_engine_delay
-    std::string state;                            // in one sentence
-    std::string advice;                           // where none comes: "expected ..."
+    double delay_s = 0;  // from the atoms' motion to the force on the hand: step, frame and filter
+    std::string state;   // in one sentence
+    std::string advice;  // where none comes: "expected ..."
 };
 std::optional<EngineReport> report_engine(const World& world);
 // True if a run without a window should end because no frame has arrived for long.
 bool is_engine_gone(const World& world) noexcept;
-// Delay from the atoms' motion to the force on the hand, s: step, frame and low-pass filter.
-double find_engine_delay(const World& world) noexcept;
 // The state of the engine in one sentence.
 std::string describe_engine(const World& world);
 

@@ -126,10 +126,10 @@ HeldParts find_held_parts(const World& world, std::vector<Entity>& hands) {
     return held;
 }
 
-SecondOrder build_second_order(const RelaxSettings& settings, const World& world) {
+SecondOrder build_second_order(const QuasiStaticSettings& settings, const World& world) {
     const StaticsDescription& s = world.resource<MechanicsSettings>().statics;
     SecondOrder second;
-    second.settings.forces = settings.step.forces;
+    second.settings.forces = settings.forces;
     second.settings.near_reach = s.near_angstrom;
     second.settings.renew_hand = s.renew_angstrom;
     if (s.responses > 0) second.settings.responses = static_cast<std::size_t>(s.responses);
@@ -215,17 +215,8 @@ Vec3 find_force(const World& world, const SecondOrder& second, Entity hand) noex
 
 Vec6 find_pull(const World& world, const SecondOrder& second, Entity hand) noexcept {
     if (second.statics.linear) return find_model_pull(world, second, hand);
-    // What atoms of the molecule do to each other adds up to nothing.
-    const auto base = static_cast<std::size_t>(grip_of(world, hand).base);
-    const TorsionModel& model = model_of(world);
-    const TorsionState& state = world.resource<TorsionState>();
-    Vec6 wrench = Vec6::Zero();
-    for (std::size_t i = 0; i < state.forces.size(); ++i) {
-        if (model.tree.molecule_of[model.tree.bodies.body_of[i]] != base) continue;
-        wrench.head<3>() += state.positions[i].cross(state.forces[i]);
-        wrench.tail<3>() += state.forces[i];
-    }
-    return wrench;
+    return find_wrench_on(model_of(world), world.resource<TorsionState>(),
+                          static_cast<std::size_t>(grip_of(world, hand).base));
 }
 
 void note_time(const World& world, const StepReport& report, SecondOrder& second) {

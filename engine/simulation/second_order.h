@@ -52,18 +52,18 @@ struct SecondOrder : SecondOrderPlan {
 };
 
 // After the springs were gathered.
-SecondOrder build_second_order(const RelaxSettings& settings, const World& world);
+SecondOrder build_second_order(const QuasiStaticSettings& settings, const World& world);
 
 // Lists the mobile parts that hands hold, in their order, and these hands.
 HeldParts find_held_parts(const World& world, std::vector<Entity>& hands);
 
-// What simulation/solver.h asks of every solver.
+// The functions that simulation/solver.h calls for every solver that relaxes.
 
 void start(World& world, SecondOrder& second);
 void restart(World& world, SecondOrder& second);
 void restore(World& world, SecondOrder& second);
 RelaxStepReport relax(World& world, SecondOrder& second, const StepInput& input);
-// By the model where there is one.
+// Use the linearised model if there is one, else the forces of the state.
 Vec3 find_force(const World& world, const SecondOrder& second, Entity hand) noexcept;
 Vec6 find_pull(const World& world, const SecondOrder& second, Entity hand) noexcept;
 

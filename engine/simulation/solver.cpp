@@ -78,17 +78,12 @@ std::size_t Solver::count_bytes() const noexcept {
 
 // ---- building -----------------------------------------------------------------------------------
 
-RelaxSettings build_settings(const World& world) {
+QuasiStaticSettings build_step_settings(const World& world) {
     const StaticsDescription& s = world.resource<MechanicsSettings>().statics;
     const ForceFieldDescription& force_field = world.resource<ForceFieldInUse>().description;
-    RelaxSettings settings;
-    settings.method = method_of(s);
-    settings.force_tolerance = s.rest_kcal_per_mol;
-    settings.steps = static_cast<std::size_t>(s.steps);
+    QuasiStaticSettings settings;
     settings.largest_move = s.largest_move_angstrom;
-    settings.keeps_pairs = true;  // from period to period
-    settings.step.largest_move = s.largest_move_angstrom;
-    ForceSettings& forces = settings.step.forces;
+    ForceSettings& forces = settings.forces;
     forces.fast = s.pairs == PairPrecision::Fast;
     forces.nonbonded.coulomb_constant = force_field.coulomb_constant;
     if (force_field.solvent != Solvent::None) {
@@ -105,17 +100,15 @@ RelaxSettings build_settings(const World& world) {
 
 void build_solver(std::span<const HeldPart> held, World& world) {
     const TorsionModel& model = model_of(world);
-    const RelaxSettings settings = build_settings(world);
+    const QuasiStaticSettings settings = build_step_settings(world);
     gather_springs(world, {});
     if (find_method(world, model.coordinates) == RelaxMethod::SecondOrder) {
         world.set_resource(Solver{build_second_order(settings, world)});
         return;
     }
     PaperStep paper = build_paper_step(settings, model, held, world);
-    if (model.coordinates <= most_second_order_coordinates) {
-        paper.estimate = build_error_estimate(
-            settings, world.resource<ForceFieldInUse>().description.solvent, world);
-    }
+    if (model.coordinates <= most_second_order_coordinates)
+        paper.estimate = build_error_estimate(settings, world);
     world.set_resource(Solver{std::move(paper)});
 }
 
@@ -291,7 +284,7 @@ const AccuracyController* find_accuracy_controller(const World& world) noexcept 
     return paper && paper->accuracy ? &*paper->accuracy : nullptr;
 }
 
-double slack_of_springs(const World& world) noexcept {
+double client_force_tolerance(const World& world) noexcept {
     return find_solver<SecondOrder>(world) ? 0.02 : 0;
 }
 

@@ -46,8 +46,8 @@ Kind* write_solver(World& world) {
 // Throws LoadError where the scene asks for it nevertheless.
 void build_solver(std::span<const HeldPart> held, World& world);
 
-// The forces, and the work of a step, by the scene.
-RelaxSettings build_settings(const World& world);
+// The settings of a relaxation step by the scene.
+QuasiStaticSettings build_step_settings(const World& world);
 
 // Computes the forces of the present state, from which steps start.
 void start_solver(World& world);
@@ -107,7 +107,7 @@ Vec3 find_force_on_held(const World& world, Entity hand) noexcept;
 // Force and torque about the origin on the molecule that the hand moves, from all other molecules.
 Vec6 find_pull_on_held(const World& world, Entity hand) noexcept;
 
-// By the model, see relaxed_contact.h; nothing, or zero, without one.
+// The answers of relaxed_contact.h by the linearised model; nothing, or zero, without one.
 std::optional<RelaxedStiffness> find_relaxed_stiffness(const World& world, Entity hand);
 Mat3 find_relaxed_coupling(const World& world, Entity hand, Entity other);
 std::optional<FollowingAtoms> find_following(const World& world, Entity hand,
@@ -124,8 +124,8 @@ void find_error(World& world);
 // The controller of the work, if the scene sets an accuracy that needs one.
 const AccuracyController* find_accuracy_controller(const World& world) noexcept;
 
-// By this share the force of a spring may differ from the one asked for before the solver is told.
-double slack_of_springs(const World& world) noexcept;
+// The relative error that the force of a client may have before its spring is moved.
+double client_force_tolerance(const World& world) noexcept;
 
 std::optional<Snap> find_last_snap(const World& world) noexcept;
 
@@ -135,7 +135,7 @@ struct ForceCount {
 };
 ForceCount count_forces(const World& world) noexcept;
 
-// What can be shown of each body's joint.
+// The values by which a picture colours joints.
 enum class JointActivity : std::uint8_t {
     Nothing,
     Active,            // 1: active now

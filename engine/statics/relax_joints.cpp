@@ -82,7 +82,7 @@ JointRelaxReport relax_joints(const TorsionModel& model, const RelaxSettings& se
     update_coordinate_forces(model, state);
     JointRelaxReport report;
     report.energy_before = state.energy();
-    if (!settings.keeps_pairs) statics.pairs.clear();
+    statics.pairs.clear();
     Descent descent(model, settings, state, statics);
     int refused = 0;
     while (true) {

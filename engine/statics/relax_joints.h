@@ -19,7 +19,6 @@ struct RelaxSettings {
     double force_tolerance =
         0.01;                  // tolerance: rms over the coordinates, kcal/mol/rad and kcal/mol/Å
     std::size_t steps = 2000;  // largest number of steps
-    bool keeps_pairs = false;  // curvature pairs of the previous call are still valid
     // Multiplies forces along the coordinates by an approximate inverse Hessian of the caller;
     // empty: by the inverse mass matrix.
     std::function<Coordinates(const Coordinates&)> precondition = {};

@@ -247,13 +247,7 @@ Vec3 find_force_on_held(const TorsionModel& model, const TorsionState& state,
         const ModelSpring& spring = state.springs[static_cast<std::size_t>(held.spring)];
         return find_spring_force(model, spring, state.positions);
     }
-    // What atoms of the molecule do to each other adds up to nothing.
-    Vec3 force = Vec3::Zero();
-    for (std::size_t i = 0; i < state.forces.size(); ++i) {
-        if (model.tree.molecule_of[model.tree.bodies.body_of[i]] == held.base)
-            force += state.forces[i];
-    }
-    return force;
+    return find_wrench_on(model, state, held.base).tail<3>();
 }
 
 }  // namespace palpa

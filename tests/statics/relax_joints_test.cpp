@@ -319,30 +319,3 @@ TEST_CASE("crambin at rest keeps its disulphides", "[statics][relax]") {
         CHECK((state.positions[a] - state.positions[b]).norm() == Approx(bond->r0).margin(0.15));
     }
 }
-
-TEST_CASE("with pairs that are kept many calls of one step are one call of many steps",
-          "[statics][relax]") {
-    const TorsionModel model = open_ring();
-    const auto relax = [&](std::size_t calls, std::size_t steps, bool keeps_pairs) {
-        RelaxSettings settings;
-        settings.steps = steps;
-        settings.keeps_pairs = keeps_pairs;
-        TorsionState state = build_torsion_state(model);
-        QuasiStatics statics = build_quasi_statics(model);
-        for (std::size_t i = 0; i < calls; ++i) (void)relax_joints(model, settings, state, statics);
-        return state;
-    };
-    const TorsionState whole = relax(1, 12, false);
-    const TorsionState kept = relax(12, 1, true);
-    const TorsionState forgotten = relax(12, 1, false);
-
-    const auto apart = [&](const TorsionState& other) {
-        double most = 0;
-        for (std::size_t i = 0; i < whole.positions.size(); ++i) {
-            most = std::max(most, (whole.positions[i] - other.positions[i]).norm());
-        }
-        return most;
-    };
-    CHECK(apart(kept) < 1e-9);
-    CHECK(apart(forgotten) > 1e-3);
-}

@@ -320,7 +320,8 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
         fmt::print(
             "  engine      {} frames, {:.0f} per second at the end; force delayed by {:.0f} ms; {} "
             "interruptions\n",
-            s.engine->frames, s.engine->frames_per_s, s.engine->delay_ms, s.engine->interruptions);
+            s.engine->frames, s.engine->frames_per_s, 1e3 * s.engine->delay_s,
+            s.engine->interruptions);
     }
     if (s.relaxation) print_relaxation(*s.relaxation);
     print_travel("travel     ", s.travel);

@@ -65,7 +65,7 @@ void pull_by_clients(World& world, const StepInput& /*input*/) {
     std::size_t next = 0;
     const ClientPull* const pull = find_client_pull(world);
     if (pull && has_mobile(world)) {
-        const double slack = slack_of_springs(world);
+        const double slack = client_force_tolerance(world);
         for (std::size_t i = 0; i < pull->atoms.size(); ++i) {
             const Vec3& force = pull->forces[i];
             const std::optional<std::uint32_t> atom = find_pulled_atom(world, pull->atoms[i]);

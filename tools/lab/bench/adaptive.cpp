@@ -95,7 +95,7 @@ LocalEnd play_local(const BenchStart& start, const TorsionState& pose, World& wo
     const Vec3 before = find_force(world);
     move_held(world, local_move(start));
     LocalEnd end;
-    for (std::size_t i = 0; i < local_steps; i += build_settings(world).steps) {
+    for (std::size_t i = 0; i < local_steps; i += find_solver<PaperStep>(world)->steps) {
         end.neglected = relax_mobile(world, {}).value().neglected;
     }
     end.change = find_force(world) - before;

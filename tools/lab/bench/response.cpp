@@ -19,7 +19,7 @@ using Pull = Eigen::VectorXd;
 
 Pull find_pull(World& world) {
     ForceMemory memory;
-    update_forces(model_of(world), build_settings(world).step.forces, memory,
+    update_forces(model_of(world), build_step_settings(world).forces, memory,
                   world.write<TorsionState>());
     update_coordinate_forces(model_of(world), world.write<TorsionState>());
     const TorsionState state = world.resource<TorsionState>();

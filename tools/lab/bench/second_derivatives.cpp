@@ -33,7 +33,7 @@ struct AtRest {
 AtRest find_rest(const World& start) {
     AtRest rest{model_of(start), start.resource<TorsionState>(), {}};
     RelaxSettings settings;
-    settings.step.forces = build_settings(start).step.forces;
+    settings.step.forces = build_step_settings(start).forces;
     settings.force_tolerance = 0.1;
     QuasiStatics statics = build_quasi_statics(rest.model);
     (void)relax_joints(rest.model, settings, rest.state, statics);

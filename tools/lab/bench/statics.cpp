@@ -27,7 +27,7 @@ void bench_method(const std::string& scene_name, World world, RelaxMethod method
     move_held(world, Vec3(shift, 0, 0));
     RelaxSettings settings;
     settings.method = method;
-    settings.step.forces = build_settings(world).step.forces;
+    settings.step.forces = build_step_settings(world).forces;
     settings.steps = most_steps;
     settings.force_tolerance = levels.back();
     const char* const name = method == RelaxMethod::QuasiStatic ? "quasi-static" : "l-bfgs";

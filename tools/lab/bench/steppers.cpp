@@ -96,8 +96,8 @@ void bench_pairs(const std::string& name, const Start& start, std::vector<BenchR
 
 void bench_steppers(const std::string& scene_name, const World& world,
                     std::vector<BenchRow>& rows) {
-    const RelaxSettings settings = build_settings(world);
-    Start start{model_of(world), world.resource<TorsionState>(), settings.step, settings.steps,
+    const auto steps = static_cast<std::size_t>(world.resource<MechanicsSettings>().statics.steps);
+    Start start{model_of(world), world.resource<TorsionState>(), build_step_settings(world), steps,
                 held_part(world).base};
     for (const bool ends : {false, true}) {
         NonbondedSettings& pairs = start.settings.forces.nonbonded;

@@ -75,7 +75,7 @@ World build_variant(const BenchStart& start, const Variant& variant) {
 double relax(const BenchStart& start, RelaxMethod method, std::size_t steps, World& world) {
     RelaxSettings settings;
     settings.method = method;
-    settings.step.forces = build_settings(world).step.forces;
+    settings.step.forces = build_step_settings(world).forces;
     settings.force_tolerance = start.scene.statics.rest_kcal_per_mol;
     settings.steps = steps;
     QuasiStatics statics = build_quasi_statics(model_of(world));
