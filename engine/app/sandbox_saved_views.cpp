@@ -130,11 +130,7 @@ std::vector<EditAction> Sandbox::list_lasting_edits() const {
     std::vector<EditAction> actions;
     if (!frame_.edits) return actions;
     for (const EditDescription& edit : *frame_.edits) {
-        const bool passes = std::holds_alternative<TakeEdit>(edit.action) ||
-                            std::holds_alternative<LetGoEdit>(edit.action) ||
-                            std::holds_alternative<PutBackEdit>(edit.action) ||
-                            std::holds_alternative<CouplingEdit>(edit.action);
-        if (!passes) actions.push_back(edit.action);
+        if (kind_of(edit.action).is_of_molecules) actions.push_back(edit.action);
     }
     return actions;
 }

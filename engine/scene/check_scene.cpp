@@ -164,14 +164,6 @@ void check_grab(const SceneDescription& scene, Problems& problems) {
     }
 }
 
-void check_ends(const RestraintEdit& restraint, const std::string& key, Problems& problems) {
-    const std::size_t ends = restraint.atoms.size() + (restraint.place_angstrom ? 1 : 0);
-    if (restraint.atoms.empty() || ends == 2) return;  // without atoms it is reported already
-    problems.add(problems.place_of(key),
-                 fmt::format("'{}' has {} {}; expected two atoms, or one and place_angstrom", key,
-                             ends, ends == 1 ? "end" : "ends"));
-}
-
 // As the system reads numbers: fewer than four parts are one too.
 bool is_host_in_numbers(std::string_view host) {
     constexpr std::int64_t most_parts = 4, most = 255;
@@ -269,20 +261,10 @@ void check_edit(const EditDescription& edit, bool has_second, const std::string&
     }
     const EditAction& action = edit.action;
     const std::string key = path + std::string(edit_names[action.index()]);
-    if (const auto* const restraint = std::get_if<RestraintEdit>(&action))
-        check_ends(*restraint, key, problems);
-    const auto* const mobility = std::get_if<MobilityEdit>(&action);
-    if (mobility && !mobility->motion && !mobility->shape) {
-        problems.add(problems.place_of(key),
-                     fmt::format("'{}' changes nothing; expected motion or shape", key));
-    }
-    const auto* const look = std::get_if<AppearanceEdit>(&action);
-    if (look && !look->representation && !look->colouring && !look->visible) {
-        problems.add(problems.place_of(key),
-                     fmt::format("'{}' changes nothing; expected representation, colour "
-                                 "or visible",
-                                 key));
-    }
+    const auto check = [&](const auto& one) {
+        if constexpr (requires { one.check(key, problems); }) one.check(key, problems);
+    };
+    std::visit(check, action);
 }
 
 namespace {
@@ -396,7 +378,7 @@ void check_ranges(const SceneDescription& scene, Problems& problems) {
                       scene.statics.cutoff_angstrom.value_or(0),
                       solvent_names[static_cast<std::size_t>(scene.force_field.solvent)]));
     for (std::size_t i = 0; i < scene.restraints.size(); ++i)
-        check_ends(scene.restraints[i], fmt::format("restraints[{}]", i + 1), problems);
+        scene.restraints[i].check(fmt::format("restraints[{}]", i + 1), problems);
     for (const MoleculeDescription& molecule : scene.molecules) {
         const std::string anchors = fmt::format("molecules.{}.anchors", molecule.name);
         for (auto i = molecule.anchors.begin(); i != molecule.anchors.end(); ++i) {

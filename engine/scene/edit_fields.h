@@ -7,9 +7,6 @@
 
 namespace palpa {
 
-inline constexpr double farthest_angstrom = 1e4;  // of a place from the origin
-
-void visit_restraint(FieldVisitor& visitor, RestraintEdit& restraint);
 void visit_look(FieldVisitor& visitor, Appearance& appearance);
 
 void visit_edits(FieldVisitor& visitor, std::vector<EditDescription>& edits);

@@ -35,10 +35,29 @@ std::optional<Address> find_address(std::string_view text) {
 }
 
 std::vector<std::filesystem::path*> list_files(EditAction& action) {
-    std::vector<std::filesystem::path*> files;
-    if (auto* const add = std::get_if<AddEdit>(&action)) files = {&add->structure, &add->topology};
+    const auto list = [](auto& edit) -> std::vector<std::filesystem::path*> {
+        if constexpr (requires { edit.list_files(); }) return edit.list_files();
+        return {};
+    };
+    std::vector<std::filesystem::path*> files = std::visit(list, action);
     std::erase_if(files, [](const std::filesystem::path* file) { return file->empty(); });
     return files;
+}
+
+bool makes_mobile(const EditAction& action) {
+    const auto find = [](const auto& edit) {
+        if constexpr (requires { edit.makes_mobile(); }) return edit.makes_mobile();
+        return false;
+    };
+    return std::visit(find, action);
+}
+
+std::string undo_name(const EditAction& action) {
+    const auto find = [](const auto& edit) -> std::string {
+        if constexpr (requires { edit.undo_name(); }) return edit.undo_name();
+        return {};
+    };
+    return std::visit(find, action);
 }
 
 }  // namespace palpa

@@ -1,7 +1,21 @@
-// Edits of a running scene: an [[edits]] table of a scene file, an edit of simulation/edit.h.
+// The list of edits of a running scene. Each is one type: its fields, checks and name in the
+// history are in scene/edits/, what it does to a world in simulation/edits/. Scene files
+// ([[edits]]), commands, journals, undo and windows go by this list.
 #pragma once
 #include "core/load_error.h"
-#include "scene/choices.h"
+#include "scene/edits/add.h"
+#include "scene/edits/appearance.h"
+#include "scene/edits/coupling.h"
+#include "scene/edits/kind.h"
+#include "scene/edits/let_go.h"
+#include "scene/edits/mobility.h"
+#include "scene/edits/pin.h"
+#include "scene/edits/put_back.h"
+#include "scene/edits/remove.h"
+#include "scene/edits/reset.h"
+#include "scene/edits/restraint.h"
+#include "scene/edits/take.h"
+#include "scene/edits/undo.h"
 
 #include <array>
 #include <cstddef>
@@ -24,107 +38,40 @@ struct Address {
 };
 std::optional<Address> find_address(std::string_view text);
 
-// The hand takes hold of a molecule as a whole, or of a residue or atom by a spring.
-struct TakeEdit {
-    std::string what;
-
-    friend bool operator==(const TakeEdit&, const TakeEdit&) = default;
-};
-
-struct LetGoEdit {
-    friend bool operator==(const LetGoEdit&, const LetGoEdit&) = default;
-};
-
-// The molecule that the hand holds goes back to where it was when the scene began, or when it was
-// added, in the shape it had then; the hand keeps hold of it.
-struct PutBackEdit {
-    friend bool operator==(const PutBackEdit&, const PutBackEdit&) = default;
-};
-
-// A residue of the scene's force field, a copy of a molecule, or what is in files, with its
-// reference atom there: of a residue and of files the first one.
-struct AddEdit {
-    std::string residue, copy_of;  // exactly one of residue, copy_of, structure
-    std::string name;
-    std::array<double, 3> at_angstrom{};
-    // As in [molecules.NAME]; without segment: the only one of the file.
-    std::filesystem::path structure{}, topology{};
-    std::string segment{};
-
-    friend bool operator==(const AddEdit&, const AddEdit&) = default;
-};
-
-struct RemoveEdit {
-    std::string molecule;
-
-    friend bool operator==(const RemoveEdit&, const RemoveEdit&) = default;
-};
-
-// Of one atom a label, of two their distance, of three an angle, of four a dihedral.
-struct PinEdit {
-    std::vector<std::string> atoms;
-
-    friend bool operator==(const PinEdit&, const PinEdit&) = default;
-};
-
-// A spring between two atoms or residues, or from one to a place.
-struct RestraintEdit {
-    std::vector<std::string> atoms;
-    std::optional<std::array<double, 3>> place_angstrom;
-    double k_kcal_per_mol_angstrom2 = 20;
-    double length_angstrom = 0;
-
-    friend bool operator==(const RestraintEdit&, const RestraintEdit&) = default;
-};
-
-// Unset fields stay unchanged.
-struct MobilityEdit {
-    std::string molecule;
-    std::optional<Motion> motion;
-    std::optional<Shape> shape;
-
-    friend bool operator==(const MobilityEdit&, const MobilityEdit&) = default;
-};
-
-struct AppearanceEdit {
-    std::string molecule;
-    std::optional<Representation> representation;
-    std::optional<Colouring> colouring;
-    std::optional<bool> visible;
-
-    friend bool operator==(const AppearanceEdit&, const AppearanceEdit&) = default;
-};
-
-// Keys of [coupling] with their values, as `--set` has them without "coupling.": "mode=3".
-struct CouplingEdit {
-    std::vector<std::string> settings;
-
-    friend bool operator==(const CouplingEdit&, const CouplingEdit&) = default;
-};
-
-// Resets the world to the scene's file.
-struct ResetEdit {
-    friend bool operator==(const ResetEdit&, const ResetEdit&) = default;
-};
-
-struct UndoEdit {
-    friend bool operator==(const UndoEdit&, const UndoEdit&) = default;
-};
-struct RedoEdit {
-    friend bool operator==(const RedoEdit&, const RedoEdit&) = default;
-};
-
 using EditAction =
     std::variant<TakeEdit, LetGoEdit, PutBackEdit, AddEdit, RemoveEdit, PinEdit, RestraintEdit,
                  MobilityEdit, AppearanceEdit, CouplingEdit, ResetEdit, UndoEdit, RedoEdit>;
 
+inline const EditKind& kind_of(const EditAction& action) {
+    return std::visit([](const auto& edit) -> const EditKind& { return edit.kind; }, action);
+}
+
 // The files that it reads.
 std::vector<std::filesystem::path*> list_files(EditAction& action);
 
-// Their keys in a scene file, in that order.
-inline constexpr std::array<std::string_view, std::variant_size_v<EditAction>> edit_names{
-    "take",     "let_go",     "put_back", "add",   "remove", "pin", "restraint",
-    "mobility", "appearance", "coupling", "reset", "undo",   "redo"};
+// True if it makes something mobile that was not.
+bool makes_mobile(const EditAction& action);
+
+// The name in the history: "grip of TL-3"; empty for undo and redo.
+std::string undo_name(const EditAction& action);
+
+template <class... Edits>
+constexpr auto list_keys(const std::variant<Edits...>* /*of*/) {
+    return std::array{Edits::kind.key...};
+}
+// Keys in a scene file, in the order of the list.
+inline constexpr auto edit_names = list_keys(static_cast<const EditAction*>(nullptr));
+
+template <class... Edits>
+std::vector<std::string_view> list_with_engine(const std::variant<Edits...>* /*of*/) {
+    std::vector<std::string_view> keys;
+    (void)((Edits::kind.with_engine ? keys.push_back(Edits::kind.key) : void(), 0) + ...);
+    return keys;
+}
+// Keys of those that are possible where a remote engine places the atoms.
+inline std::vector<std::string_view> list_edits_with_engine() {
+    return list_with_engine(static_cast<const EditAction*>(nullptr));
+}
 
 inline constexpr std::array<std::string_view, 2> edit_hand_names{"first", "second"};
 

@@ -96,7 +96,7 @@ void visit_restraints(FieldVisitor& v, std::vector<StartRestraint>& restraints) 
     visit_entries(v,
                   {.key = "restraints",
                    .meaning = "springs between two atoms or residues, or from one to a place"},
-                  restraints, [&](StartRestraint& r) { visit_restraint(v, r); });
+                  restraints, [&](StartRestraint& r) { r.visit_keys(v); });
 }
 
 void visit_pins(FieldVisitor& v, std::vector<StartPin>& pins) {

@@ -230,17 +230,8 @@ void LiveSimulation::obey(const Reset& reset) {
 
 bool LiveSimulation::takes_long(const EditDescription& edit) const noexcept {
     constexpr std::size_t many_atoms = 1000;
-    const auto is_quick = [](const auto& action) {
-        using Action = std::decay_t<decltype(action)>;
-        return std::is_same_v<Action, UndoEdit> || std::is_same_v<Action, RedoEdit> ||
-               std::is_same_v<Action, PinEdit> || std::is_same_v<Action, AppearanceEdit> ||
-               std::is_same_v<Action, CouplingEdit>;
-    };
-    const auto* const take = std::get_if<TakeEdit>(&edit.action);
-    const bool makes_mobile = std::holds_alternative<MobilityEdit>(edit.action) ||
-                              (take && take->what.find(':') != std::string::npos);
     return world_.resource<AtomTable>().positions.size() >= many_atoms && places_atoms(world_) &&
-           (needs_mechanics(world_) || makes_mobile) && !std::visit(is_quick, edit.action);
+           (needs_mechanics(world_) || makes_mobile(edit.action)) && !kind_of(edit.action).is_quick;
 }
 
 void LiveSimulation::build_draft() noexcept {

@@ -47,37 +47,6 @@ SettingChange find_change(const LiveSettings& before, const LiveSettings& after)
 
 }  // namespace
 
-std::string name_of(const EditDescription& edit) {
-    const auto visit = [](const auto& action) -> std::string {
-        using Action = std::decay_t<decltype(action)>;
-        if constexpr (std::is_same_v<Action, TakeEdit>)
-            return format_translated("grip of {}", action.what);
-        else if constexpr (std::is_same_v<Action, LetGoEdit>)
-            return translated("letting go");
-        else if constexpr (std::is_same_v<Action, PutBackEdit>)
-            return translated("return to the start");
-        else if constexpr (std::is_same_v<Action, AddEdit>)
-            return format_translated("addition of {}", action.name);
-        else if constexpr (std::is_same_v<Action, RemoveEdit>)
-            return format_translated("removal of {}", action.molecule);
-        else if constexpr (std::is_same_v<Action, PinEdit>)
-            return translated("measurement");
-        else if constexpr (std::is_same_v<Action, RestraintEdit>)
-            return translated("restraint");
-        else if constexpr (std::is_same_v<Action, MobilityEdit>)
-            return format_translated("mobility of {}", action.molecule);
-        else if constexpr (std::is_same_v<Action, AppearanceEdit>)
-            return format_translated("appearance of {}", action.molecule);
-        else if constexpr (std::is_same_v<Action, CouplingEdit>)
-            return translated("coupling");
-        else if constexpr (std::is_same_v<Action, ResetEdit>)
-            return translated("reset");
-        else
-            return {};
-    };
-    return std::visit(visit, edit.action);
-}
-
 UndoHistory::Part UndoHistory::apply(World& world, const EditDescription& edit,
                                      PersonChoices& choices) {
     const bool undoes = std::holds_alternative<UndoEdit>(edit.action);
@@ -106,9 +75,8 @@ void UndoHistory::adopt(World& world, World changed, const EditDescription& edit
 }
 
 void UndoHistory::note_edit(World before, const EditDescription& edit) {
-    Entry entry{name_of(edit), std::move(before)};
-    entry.is_of_coupling = std::holds_alternative<CouplingEdit>(edit.action) ||
-                           std::holds_alternative<ResetEdit>(edit.action);
+    Entry entry{palpa::undo_name(edit.action), std::move(before)};
+    entry.is_of_coupling = kind_of(edit.action).sets_coupling;
     has_changed_coupling_ = entry.is_of_coupling;
     const bool takes = std::holds_alternative<TakeEdit>(edit.action);
     const bool lets_go = std::holds_alternative<LetGoEdit>(edit.action);

@@ -86,7 +86,4 @@ private:
     bool has_changed_coupling_ = false;
 };
 
-// The name of an edit in the history: "grip of TL-3".
-std::string name_of(const EditDescription& edit);
-
 }  // namespace palpa

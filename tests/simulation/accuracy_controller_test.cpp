@@ -195,8 +195,8 @@ TEST_CASE("an error estimate is the difference from complete relaxation",
         World few = load_world(
             scene_of_peptides({"statics.active=0", "hand.start_offset_angstrom=[-6, 0, 0]"}));
         // Within the molecule, so that it does not pull at the whole.
-        add_restraint(few, {{"held:1", "held:4"}, {}, 30, 3});
-        if (is_by_spring) take(few, first_hand(few), {"held:2"});
+        RestraintEdit{{"held:1", "held:4"}, {}, 30, 3}.apply(few, 0);
+        if (is_by_spring) TakeEdit{"held:2"}.apply(few, 0);
         move_held(few, (0.05 + 0.03 * i) * Vec3::Unit(i % 3));
         (void)relax_mobile(few, {}).value();
         const Vec3 felt = find_force_on_held(few, first_hand(few));

@@ -81,7 +81,7 @@ TEST_CASE("any molecule can be taken as a whole", "[simulation][edit]") {
     const Entity hand = first_hand(world);
     const std::vector<Vec3> before = world.resource<AtomTable>().positions;
 
-    take(world, hand, {"resting"});
+    TakeEdit{"resting"}.apply(world, 0);
 
     CHECK(world.resource<AtomTable>().positions == before);
     CHECK(grip_of(world, hand).molecule == molecule_called(world, "resting"));
@@ -112,7 +112,7 @@ TEST_CASE("any residue or atom can be taken by a spring, in rigid scenes too",
     const std::string name = is_residue ? "3" : "3 CB";
     const Vec3 start = middle_of_residue(world, "resting", name);
 
-    take(world, hand, {"resting:" + name});
+    TakeEdit{"resting:" + name}.apply(world, 0);
 
     CHECK((held_place(world, hand) - start).norm() < 1e-9);
     CHECK(local_contact_of(world).model.force_newton.norm() < 1e-15);
@@ -127,7 +127,7 @@ TEST_CASE("any residue or atom can be taken by a spring, in rigid scenes too",
     CHECK((felt.force_newton - expected).norm() < 1e-9 * expected.norm());
 
     // A hand that lets go gives back what the molecule may do, and feels nothing.
-    let_go(world, hand);
+    LetGoEdit{}.apply(world, 0);
     CHECK(world.find<Grip>(hand) == nullptr);
     CHECK(local_contact_of(world).model.is_still);
     CHECK(local_contact_of(world).model.force_newton.norm() == 0);
@@ -143,7 +143,7 @@ TEST_CASE("what is in hand goes back to where it was at the start, whatever was 
     World world = is_rigid ? load_rigid() : load_two();
     const std::vector<Vec3> start = world.resource<AtomTable>().positions;
     const Entity hand = first_hand(world);
-    take(world, hand, {what});
+    TakeEdit{what}.apply(world, 0);
     ContactModel felt = local_contact_of(world).model;
     for (int i = 1; i <= 40; ++i) felt = test::step_once(world, hand_after({0, 0.05 * i, 0}), felt);
     const AtomRange own = held_range(world, hand);
@@ -151,7 +151,7 @@ TEST_CASE("what is in hand goes back to where it was at the start, whatever was 
     REQUIRE((world.resource<AtomTable>().positions[own.first] - start[own.first]).norm() > 0.1);
     const std::uint32_t hold = local_contact_of(world).model.start;
 
-    put_back(world, hand);
+    PutBackEdit{}.apply(world, 0);
 
     const std::vector<Vec3>& now = world.resource<AtomTable>().positions;
     for (std::uint32_t i = own.first; i < own.first + own.count; ++i)
@@ -177,15 +177,16 @@ TEST_CASE("nothing goes back onto what is there now, or out of another hand",
     (void)test::step_once(world, hand_after(by), local_contact_of(world).model);
     AddEdit add{"TIP3", "", "w2", {}};
     std::ranges::copy(start, add.at_angstrom.begin());
-    add_molecule(world, add);
+    add.apply(world, 0);
     const std::string before = world_bytes(world);
 
-    CHECK_THAT(load_error_of([&] { put_back(world, hand); }),
+    CHECK_THAT(load_error_of([&] { PutBackEdit{}.apply(world, 0); }),
                Contains("'moved' would overlap") && Contains("room where it was at the start"));
 
     CHECK(world_bytes(world) == before);
-    let_go(world, hand);
-    CHECK_THAT(load_error_of([&] { put_back(world, hand); }), Contains("the hand holds nothing"));
+    LetGoEdit{}.apply(world, 0);
+    CHECK_THAT(load_error_of([&] { PutBackEdit{}.apply(world, 0); }),
+               Contains("the hand holds nothing"));
 }
 
 TEST_CASE("after adding and removing a molecule the world is what it was, to the byte",
@@ -231,14 +232,14 @@ TEST_CASE("after adding and removing a molecule the world is what it was, to the
     World world = load_world(read_scene(row.file, row.settings));
     (void)test::step_once(world, hand_after({-0.2, 0, 0}), local_contact_of(world).model);
     // An edit of what moves begins mechanics anew, from where everything is.
-    set_mobility(world, {first_molecule(world), {}, {}});
+    MobilityEdit{first_molecule(world), {}, {}}.apply(world, 0);
     const std::string before = world_bytes(world);
     World never = world;
     const std::size_t atoms = world.resource<AtomTable>().size();
     const AddEdit add{row.residue,   row.copy_of,  "another",  {90, 80, 70},
                       row.structure, row.topology, row.segment};
 
-    add_molecule(world, add);
+    add.apply(world, 0);
 
     const Molecule& added = *world.find<Molecule>(molecule_called(world, "another"));
     CHECK(world.resource<AtomTable>().size() == atoms + added.atoms.count);
@@ -249,7 +250,7 @@ TEST_CASE("after adding and removing a molecule the world is what it was, to the
     CHECK((world.resource<AtomTable>().positions[added.reference_atom] - Vec3(90, 80, 70)).norm() <
           1e-12);
     CHECK((world_bytes(world) != before));
-    remove_molecule(world, {"another"});
+    RemoveEdit{"another"}.apply(world, 0);
     REQUIRE((world_bytes(world) == before));
     // And does the same from then on.
     for (World* const each : {&world, &never}) {
@@ -262,7 +263,7 @@ TEST_CASE("after adding and removing a molecule the world is what it was, to the
 
 TEST_CASE("a water that is added has the shape of its parameters", "[simulation][edit]") {
     World world = load_waters();
-    add_molecule(world, {"TIP3", "", "w2", {0, 10, 0}});
+    AddEdit{"TIP3", "", "w2", {0, 10, 0}}.apply(world, 0);
     const AtomTable& atoms = world.resource<AtomTable>();
     const AtomRange range = world.find<Molecule>(molecule_called(world, "w2"))->atoms;
     const Vec3 o = atoms.positions[range.first];
@@ -296,9 +297,9 @@ TEST_CASE("what is added from files is what a scene with that molecule has", "[s
     // Another one of the same files in the place of what was there.
     const Vec3 at =
         world.resource<AtomTable>().positions[world.find<Molecule>(resting)->atoms.first];
-    remove_molecule(world, {"resting"});
+    RemoveEdit{"resting"}.apply(world, 0);
 
-    add_molecule(world, {"", "", "again", {at.x(), at.y(), at.z()}, file, psf, "PEPA"});
+    AddEdit{"", "", "again", {at.x(), at.y(), at.z()}, file, psf, "PEPA"}.apply(world, 0);
 
     World whole = load_two(settings);
     const AtomTable &now = world.resource<AtomTable>(), &then = whole.resource<AtomTable>();
@@ -384,7 +385,7 @@ TEST_CASE("what files lack is refused by name, and nothing changes", "[simulatio
     for (const std::string& what : row.what) CHECK_THAT(error, Contains(what));
     CHECK(world_bytes(world) == before);
     CHECK(history.undo_name().empty());
-    add_molecule(world, {"", "", "new", {0, 0, 50}, in_folder("whole.crd")});
+    AddEdit{"", "", "new", {0, 0, 50}, in_folder("whole.crd")}.apply(world, 0);
     CHECK(world.resource<AtomTable>().size() == 9);
 }
 
@@ -402,9 +403,9 @@ TEST_CASE("what a residue's parameters lack is refused by name", "[simulation][e
         scene, std::vector<std::string>{"force_field.files=[\"tip3p.str\", \"more.str\"]"}));
     const std::string before = world_bytes(world);
 
-    CHECK_THAT(load_error_of([&] { add_molecule(world, {"BAD", "", "new", {0, 9, 0}}); }),
+    CHECK_THAT(load_error_of([&] { AddEdit{"BAD", "", "new", {0, 9, 0}}.apply(world, 0); }),
                Contains("'XX'"));
-    CHECK_THAT(load_error_of([&] { add_molecule(world, {"OXY", "", "new", {0, 9, 0}}); }),
+    CHECK_THAT(load_error_of([&] { AddEdit{"OXY", "", "new", {0, 9, 0}}.apply(world, 0); }),
                Contains("bond") && Contains("OT"));
     CHECK(world_bytes(world) == before);
 }
@@ -516,7 +517,7 @@ TEST_CASE("nothing is added on top of what is there, and the message says where 
         }
     }
 
-    const std::string error = load_error_of([&] { add_molecule(world, add); });
+    const std::string error = load_error_of([&] { add.apply(world, 0); });
 
     CHECK_THAT(error, Contains("'copy' would overlap another molecule") &&
                           Contains(fmt::format("copy TIP3 1 {} is {:.2f} Å from {}", one, nearest,
@@ -524,7 +525,7 @@ TEST_CASE("nothing is added on top of what is there, and the message says where 
                           Contains("expected a place (at_angstrom) with at least 1 Å"));
     CHECK(world_bytes(world) == before);
     add.at_angstrom[2] += 6;
-    add_molecule(world, add);
+    add.apply(world, 0);
     CHECK(world.resource<AtomTable>().size() == 9);
 }
 
@@ -568,16 +569,16 @@ TEST_CASE("two hands at one molecule leave it as it was, whichever lets go first
           "[simulation][edit]") {
     World world = load_world(read_scene(test::in_project("scenes/water/two-hands.toml")));
     const std::vector<Entity> hands = find_hands(world);
-    let_go(world, hands[0]);
-    let_go(world, hands[1]);
+    LetGoEdit{}.apply(world, 0);
+    LetGoEdit{}.apply(world, 1);
     const Entity molecule = molecule_called(world, "standing");
     const Mobility own = *world.find<Mobility>(molecule);
     const std::size_t first = GENERATE(0, 1);
     const bool is_whole = GENERATE(false, true);
-    take(world, hands[0], {is_whole ? "standing" : "standing:1"});
-    take(world, hands[1], {"standing:1"});
-    let_go(world, hands[first]);
-    let_go(world, hands[1 - first]);
+    TakeEdit{is_whole ? "standing" : "standing:1"}.apply(world, 0);
+    TakeEdit{"standing:1"}.apply(world, 1);
+    LetGoEdit{}.apply(world, first);
+    LetGoEdit{}.apply(world, 1 - first);
     CHECK(world.find<Mobility>(molecule)->motion == own.motion);
     CHECK(world.find<Mobility>(molecule)->shape == own.shape);
 }
@@ -586,7 +587,8 @@ TEST_CASE("a coupling whose law cannot be built is refused", "[simulation][edit]
     World world = load_waters();
     const std::string before = world_bytes(world);
     CHECK_THAT(load_error_of([&] {
-                   set_coupling(world, {{"mode=guarded", "force_law=calibrated", "F_0_nN=0.0"}});
+                   CouplingEdit{{"mode=guarded", "force_law=calibrated", "F_0_nN=0.0"}}.apply(world,
+                                                                                              0);
                }),
                Contains("cannot have the slopes"));
     CHECK(world_bytes(world) == before);
@@ -660,7 +662,7 @@ TEST_CASE(
     world.write<MechanicsSettings>().statics.method =
         is_adaptive ? RelaxMethod::QuasiStatic : RelaxMethod::SecondOrder;
     const Entity hand = first_hand(world);
-    set_mobility(world, {"fixed", Motion::Free, {}});
+    MobilityEdit{"fixed", Motion::Free, {}}.apply(world, 0);
     REQUIRE(grip_of(world, hand).freedom == 6);
     REQUIRE(grip_of(world, hand).base >= 0);
     REQUIRE((find_solver<PaperStep>(world) != nullptr) == is_adaptive);
@@ -708,8 +710,8 @@ TEST_CASE("a restraint pulls at both ends, and marks measure", "[simulation][edi
     World world = load_two();
     const Vec3 apart =
         middle_of_residue(world, "held", "2 CA") - middle_of_residue(world, "resting", "2 CA");
-    pin(world, {{"resting:2 CA", "held:2 CA"}});
-    add_restraint(world, {{"held:2 CA", "resting:2 CA"}, {}, 50, apart.norm() - 1});
+    PinEdit{{"resting:2 CA", "held:2 CA"}}.apply(world, 0);
+    RestraintEdit{{"held:2 CA", "resting:2 CA"}, {}, 50, apart.norm() - 1}.apply(world, 0);
     ContactModel felt = local_contact_of(world).model;
     for (int i = 0; i < 60; ++i) felt = test::step_once(world, {}, felt);
     double distance = 0;

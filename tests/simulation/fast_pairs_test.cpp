@@ -137,8 +137,8 @@ TEST_CASE("two hands with rigid molecules in them have fast pairs, before and af
         check_against_double(world, hand);
     }
 
-    let_go(world, hands[1]);
-    remove_molecule(world, {.molecule = "protease_b"});
+    LetGoEdit{}.apply(world, 1);
+    RemoveEdit{.molecule = "protease_b"}.apply(world, 0);
     REQUIRE(has_fast_pairs(world, hands[0]));
     check_against_double(world, hands[0]);
 }

@@ -33,14 +33,14 @@ Vec3 centre_of_water(const World& world, const std::string& name) {
 // A water that moves by itself, 60 Å from the scene's two.
 World water_to_be_pulled(const std::string& method) {
     World world = load_world(test::water_scene({"mode=4", "statics.method=" + method}));
-    add_molecule(world, {"TIP3", "", "free", {0, 0, 60}});
-    set_mobility(world, {"free", Motion::Free, {}});
+    AddEdit{"TIP3", "", "free", {0, 0, 60}}.apply(world, 0);
+    MobilityEdit{"free", Motion::Free, {}}.apply(world, 0);
     return world;
 }
 
 void restrain(World& world, double k) {
     const Vec3 at = centre_of_water(world, "free");
-    add_restraint(world, {{"free:1"}, {{at.x(), at.y(), at.z()}}, k, 0});
+    RestraintEdit{{"free:1"}, {{at.x(), at.y(), at.z()}}, k, 0}.apply(world, 0);
 }
 
 ClientPull pull_at(const World& world, const std::string& name, const Vec3& force) {
@@ -112,7 +112,7 @@ TEST_CASE("a force of a client stays what it is however far its atom goes", "[cl
 TEST_CASE("a hand on a spring feels what a client pulls with", "[clients]") {
     World world = water_to_be_pulled("quasi-static");
     restrain(world, 0.001);
-    take(world, first_hand(world), {"free:1"});
+    TakeEdit{"free:1"}.apply(world, 0);
     step_on(world, 100);
     const Vec3 end = held_place(world, first_hand(world));
     world.set_resource(pull_at(world, "free", {0, 3, 0}));
@@ -153,7 +153,7 @@ TEST_CASE("where atoms are others than the client knows nothing is pulled", "[cl
     world.set_resource(pull_at(world, "free", {3, 0, 0}));
     step_on(world, 2);
     CHECK(is_pulled_by_clients(world));
-    add_molecule(world, {"TIP3", "", "other", {0, 30, 60}});
+    AddEdit{"TIP3", "", "other", {0, 30, 60}}.apply(world, 0);
     step_on(world, 2);
     CHECK_FALSE(is_pulled_by_clients(world));
     CHECK(count_pulls_without_effect(world) == 3);

@@ -96,11 +96,11 @@ TEST_CASE("a remote engine's atoms are taken by springs, and nothing else is cha
     World world = load(folder.path(), scene_text(""));
     const Entity hand = first_hand(world);
 
-    take(world, hand, {"ion"});
+    TakeEdit{"ion"}.apply(world, 0);
     CHECK(world.find<EngineHold>(hand)->atoms == std::vector<std::uint32_t>{6});
-    take(world, hand, {"water:2 OW"});
+    TakeEdit{"water:2 OW"}.apply(world, 0);
     CHECK(world.find<EngineHold>(hand)->atoms == std::vector<std::uint32_t>{3});
-    let_go(world, hand);
+    LetGoEdit{}.apply(world, 0);
     CHECK_FALSE(world.find<EngineHold>(hand));
     EditDescription remove;
     remove.action = RemoveEdit{"ion"};

@@ -150,11 +150,11 @@ TEST_CASE("what is added to a scene must go with its solvent", "[simulation][sol
     edit.segment = "B";
     edit.name = "another";
     edit.at_angstrom = {0, 40, 0};
-    CHECK_THAT(load_error_of([&] { add_molecule(world, edit); }),
+    CHECK_THAT(load_error_of([&] { edit.apply(world, 0); }),
                Contains("LYS of another LYS 2 is neutral"));
     CHECK(world.resource<AtomTable>().size() == atoms);
     edit.topology = test::in_project("scenes/salt-bridge/vacuum.psf");
-    CHECK(load_error_of([&] { add_molecule(world, edit); }) == "no error");
+    CHECK(load_error_of([&] { edit.apply(world, 0); }) == "no error");
 }
 
 // Whatever a molecule does to itself sums to no force and no torque.

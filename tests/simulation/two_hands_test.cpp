@@ -299,7 +299,7 @@ TEST_CASE(
     const auto [first, second] = hands_of(two);
     World one = load({});
     const Vec3 end = held_place(two, second);
-    add_restraint(one, {{"resting:3 CB"}, {{end.x(), end.y(), end.z()}}, k, 0});
+    RestraintEdit{{"resting:3 CB"}, {{end.x(), end.y(), end.z()}}, k, 0}.apply(one, 0);
     const std::uint32_t atom = spring_of(two, second)->atoms.front();
     Poses poses = poses_of(two);
     // What both round differently grows tenfold in some steps.

@@ -175,7 +175,7 @@ TEST_CASE("each molecule is drawn as its appearance says, and all others as the 
     const std::vector<SphereShape> before = spheres_of_moved();
     const glm::vec3 fixed_colour = find_fixed(build_frame(world, settings)).colour;
 
-    set_appearance(world, {"fixed", Representation::SpaceFilling, Colouring::Element, {}});
+    AppearanceEdit{"fixed", Representation::SpaceFilling, Colouring::Element, {}}.apply(world, 0);
     FrameScene frame = build_frame(world, settings);
     CHECK(frame.cones.size() == 2);  // of the other one
     CHECK(find_fixed(frame).radius > 3 * before.front().radius);
@@ -187,10 +187,10 @@ TEST_CASE("each molecule is drawn as its appearance says, and all others as the 
     CHECK(build_frame(world, settings).cones.size() == 2);
     CHECK(spheres_of_moved().front().radius != before.front().radius);
 
-    set_appearance(world, {"fixed", {}, {}, false});
+    AppearanceEdit{"fixed", {}, {}, false}.apply(world, 0);
     frame = build_frame(world, settings);
     CHECK(frame.spheres.size() == 3);
-    set_appearance(world, {"fixed", {}, {}, true});
+    AppearanceEdit{"fixed", {}, {}, true}.apply(world, 0);
     CHECK(build_frame(world, settings).spheres.size() == 6);
 }
 
@@ -198,7 +198,7 @@ TEST_CASE("one molecule as a ribbon, the other in full", "[view]") {
     World world = load_world(read_scene(test::test_data("two_peptides")));
     const ViewSettings settings = shown_as(Representation::BallAndStick);
     const FrameScene full = build_frame(world, settings);
-    set_appearance(world, {"resting", Representation::Pocket, {}, {}});
+    AppearanceEdit{"resting", Representation::Pocket, {}, {}}.apply(world, 0);
     const FrameScene mixed = build_frame(world, settings);
     const AtomRange held = held_range(world, first_hand(world));
 
@@ -207,7 +207,7 @@ TEST_CASE("one molecule as a ribbon, the other in full", "[view]") {
     REQUIRE(mixed.meshes.size() == 1);
     for (const MeshVertex& vertex : mixed.meshes[0].vertices)
         CHECK_FALSE(has_atom(held, vertex.pick));
-    set_appearance(world, {"resting", {}, {}, false});
+    AppearanceEdit{"resting", {}, {}, false}.apply(world, 0);
     CHECK(build_frame(world, settings).spheres.size() == shapes_of(full, held).size());
 }
 
@@ -220,7 +220,7 @@ TEST_CASE("hydrogen bonds of what is hidden are not drawn", "[view]") {
                                   &ConeShape::pick);
     };
     CHECK(dashes() > 0);
-    set_appearance(world, {"fixed", {}, {}, false});
+    AppearanceEdit{"fixed", {}, {}, false}.apply(world, 0);
     CHECK(dashes() == 0);
 }
 
@@ -258,7 +258,7 @@ TEST_CASE("a hand that holds nothing has no arrow and no bonds, and all is drawn
     move_grabbed(world, 2.8);
     const Representation representation =
         GENERATE(Representation::BallAndStick, Representation::InHand, Representation::Pocket);
-    let_go(world, first_hand(world));
+    LetGoEdit{}.apply(world, 0);
     const FrameScene frame = build_frame(world, {.representation = representation});
     CHECK(std::ranges::all_of(frame.cones,
                               [](const ConeShape& cone) { return cone.pick < first_sign_pick; }));

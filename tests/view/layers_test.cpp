@@ -205,10 +205,10 @@ TEST_CASE("what selections mean is kept until atoms move or others are there", "
         atoms.positions[i] += Vec3(0, 36, 0);
     // The same number of atoms, in another order: moved, third, new.
     const World before = world;
-    remove_molecule(world, {"fixed"});
+    RemoveEdit{"fixed"}.apply(world, 0);
     CHECK(is_as_alone());
-    add_molecule(world,
-                 {.residue = {}, .copy_of = "third", .name = "new", .at_angstrom = {0, 0, 50}});
+    AddEdit{.residue = {}, .copy_of = "third", .name = "new", .at_angstrom = {0, 0, 50}}.apply(
+        world, 0);
     CHECK(world.resource<AtomTable>().size() == before.resource<AtomTable>().size());
     CHECK(is_as_alone());
     world = before;

@@ -94,7 +94,7 @@ TEST_CASE("a reset by an edit is a new start, though steps are counted on", "[vi
 
     const std::uint64_t resets = world.resource<Clock>().resets;
     World edited = test::three_waters(0, {0, 4, 0});
-    reset(edited);
+    ResetEdit{}.apply(edited, 0);
     CHECK(edited.resource<Clock>().resets == resets + 1);
 }
 

@@ -37,7 +37,7 @@ std::optional<std::uint32_t> find_pulled_atom(const World& world, std::uint32_t 
 }
 
 // An address of an atom as springs have it.
-AtomsOf find_address(const World& world, std::uint32_t in_table) {
+AtomsOf find_table_address(const World& world, std::uint32_t in_table) {
     AtomsOf address;
     world.each<Molecule>([&](Entity entity, const Molecule& molecule) {
         if (has_atom(molecule.atoms, in_table))
@@ -71,7 +71,7 @@ void pull_by_clients(World& world, const StepInput& /*input*/) {
             const std::optional<std::uint32_t> atom = find_pulled_atom(world, pull->atoms[i]);
             if (!atom || force.isZero(0)) continue;
             const Vec3& place = world.resource<TorsionState>().positions[*atom];
-            const AtomsOf address = find_address(world, pull->atoms[i]);
+            const AtomsOf address = find_table_address(world, pull->atoms[i]);
             const Entity entity = next < before.size() ? before[next] : world.create();
             const Spring* const old = world.find<Spring>(entity);
             ++next;

@@ -38,8 +38,8 @@ constexpr double wind = 0.5;  // kcal/mol/Å
 // A water that moves by itself, far from the scene's two.
 World water_in_the_wind() {
     World world = load_world(test::water_scene({"mode=4", "statics.method=quasi-static"}));
-    add_molecule(world, {"TIP3", "", "free", {0, 0, 60}});
-    set_mobility(world, {"free", Motion::Free, {}});
+    AddEdit{"TIP3", "", "free", {0, 0, 60}}.apply(world, 0);
+    MobilityEdit{"free", Motion::Free, {}}.apply(world, 0);
     return world;
 }
 
@@ -54,8 +54,8 @@ void step(World& world, int steps) {
 }
 
 Entity add_free(World& world, const std::string& name, const std::array<double, 3>& place) {
-    add_molecule(world, {"TIP3", "", name, place});
-    set_mobility(world, {name, Motion::Free, {}});
+    AddEdit{"TIP3", "", name, place}.apply(world, 0);
+    MobilityEdit{name, Motion::Free, {}}.apply(world, 0);
     return molecule_called(world, name);
 }
 
@@ -106,7 +106,7 @@ TEST_CASE("a water on a spring rests where the spring pulls as hard as the wind"
     World world = water_in_the_wind();
     const Vec3 start = centre_of(world, "free");
     const double k = GENERATE(2.0, 5.0);
-    add_restraint(world, {{"free:1"}, {{start.x(), start.y(), start.z()}}, k, 0});
+    RestraintEdit{{"free:1"}, {{start.x(), start.y(), start.z()}}, k, 0}.apply(world, 0);
     step(world, 400);
     const Vec3 moved = centre_of(world, "free") - start;
     // The two other waters, 60 Å away, pull with less than a hundredth of that.
@@ -116,14 +116,14 @@ TEST_CASE("a water on a spring rests where the spring pulls as hard as the wind"
 
 TEST_CASE("in a hand there is no wind", "[wind]") {
     World world = water_in_the_wind();
-    take(world, first_hand(world), {"free"});
+    TakeEdit{"free"}.apply(world, 0);
     const Vec3 place = held_place(world, first_hand(world));
     step(world, 20);
     CHECK((held_place(world, first_hand(world)) - place).norm() < 1e-12);
     CHECK(local_contact_of(world).model.force_newton.norm() <
           0.02 * wind * units::newton_per_kcal_per_mol_angstrom);
-    let_go(world, first_hand(world));
-    set_mobility(world, {"free", Motion::Free, {}});
+    LetGoEdit{}.apply(world, 0);
+    MobilityEdit{"free", Motion::Free, {}}.apply(world, 0);
     step(world, 20);
     CHECK(centre_of(world, "free").x() > place.x() + 0.01);
 }
@@ -167,11 +167,11 @@ TEST_CASE("two winds, a client and two hands pull at once, each with its own for
     add_free(world, "one", {0, 60, 0});
     add_free(world, "other", {0, -60, 0});
     const std::vector<Entity> hands = find_hands(world);
-    take(world, hands[0], {"one:1"});
-    take(world, hands[1], {"other:1"});
+    TakeEdit{"one:1"}.apply(world, 0);
+    TakeEdit{"other:1"}.apply(world, 1);
     const Vec3 start = centre_of(world, "free");
     constexpr double k = 2, gust = 0.7, client = 1.1;
-    add_restraint(world, {{"free:1"}, {{start.x(), start.y(), start.z()}}, k, 0});
+    RestraintEdit{{"free:1"}, {{start.x(), start.y(), start.z()}}, k, 0}.apply(world, 0);
     world.set_resource(test::pull_molecule(world, free, {0, 0, client}));
     std::array<Vec3, 2> ends{};
     for (std::size_t i = 0; i < 2; ++i) ends[i] = held_place(world, hands[i]);

@@ -1,0 +1,16 @@
+// What the program needs to know of an edit beside its fields.
+#pragma once
+#include <string_view>
+
+namespace palpa {
+
+struct EditKind {
+    std::string_view key;         // in a scene file
+    bool by_hand = false;         // one of the hands makes it
+    bool with_engine = false;     // also where a remote engine places the atoms
+    bool is_quick = false;        // takes no time in a world of any size
+    bool sets_coupling = false;   // changes the coupling
+    bool is_of_molecules = true;  // false for what is in hand, and for the coupling
+};
+
+}  // namespace palpa

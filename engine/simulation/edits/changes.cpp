@@ -1,0 +1,104 @@
+#include "simulation/edits/changes.h"
+
+#include "simulation/held.h"
+#include "simulation/mechanics.h"
+#include "simulation/resources.h"
+#include "simulation/systems/publish_contact.h"
+
+#include <fmt/format.h>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace palpa {
+namespace {
+
+void refresh_contact(World& world, Entity hand) {
+    Contact& contact = *world.write<Contact>(hand);
+    const std::uint32_t start = contact.answer.model.start;
+    contact.near = {};
+    if (world.find<Grip>(hand)) {
+        update_near(world, hand);
+        contact.answer = build_local_contact(world, hand, {});
+    } else {
+        contact.answer = build_still_contact(world);
+    }
+    contact.answer.model.start = start;
+}
+
+bool can_move_by_itself(const Mobility& mobility) {
+    return mobility.motion == Motion::Free || mobility.shape == Shape::Flexible;
+}
+
+}  // namespace
+
+void settle_edit(World& world) {
+    rebuild_mechanics(world);
+    for (const Entity hand : find_hands(world)) refresh_contact(world, hand);
+}
+
+Entity find_hand(const World& world, std::size_t hand) {
+    const std::vector<Entity> hands = find_hands(world);
+    if (hand >= hands.size())
+        refuse(fmt::format("there is no {} hand; the scene has {}", hand == 1 ? "second" : "such",
+                           hands.size()));
+    return hands[hand];
+}
+
+Entity other_holder(const World& world, Entity hand, Entity molecule) {
+    Entity other;
+    world.each<Grip>([&](Entity holder, const Grip& grip) {
+        if (holder != hand && grip.molecule == molecule) other = holder;
+    });
+    return other;
+}
+
+void free_for_spring(Mobility& mobility) {
+    if (!can_move_by_itself(mobility)) mobility.motion = Motion::Free;
+}
+
+void release(World& world, Entity hand) {
+    const Grip* const held = world.find<Grip>(hand);
+    if (!held) return;
+    const Grip grip = *held;
+    const bool held_whole = holds_whole(world, hand);
+    world.remove<Grip>(hand);
+    world.remove<Spring>(hand);
+    take_hold_anew(world, hand);
+    const Entity other = other_holder(world, hand, grip.molecule);
+    Mobility& mobility = *world.write<Mobility>(grip.molecule);
+    if (other == Entity{}) {
+        mobility = grip.before;
+        return;
+    }
+    if (!held_whole) return;
+    mobility = grip.before;
+    free_for_spring(mobility);
+}
+
+void take_hold_anew(World& world, Entity hand) { ++world.write<Contact>(hand)->answer.model.start; }
+
+void check_room(const AtomTable& atoms, AtomRange added, const std::string& name,
+                const std::string& remedy) {
+    constexpr double nearest = 1;  // Å
+    std::array<std::size_t, 2> pair{};
+    double closest2 = nearest * nearest;
+    for (std::uint32_t i = added.first; i < added.first + added.count; ++i) {
+        for (std::uint32_t j = 0; j < atoms.positions.size(); ++j) {
+            if (has_atom(added, j)) continue;
+            const double distance2 = (atoms.positions[i] - atoms.positions[j]).squaredNorm();
+            if (!(distance2 < closest2)) continue;
+            closest2 = distance2;
+            pair = {i, j};
+        }
+    }
+    if (pair[0] == pair[1]) return;
+    refuse(
+        fmt::format("'{}' would overlap another molecule: {} is {:.2f} Å from {}; expected {} with "
+                    "at least {} Å between all atoms",
+                    name, to_string(atoms.names[pair[0]]), std::sqrt(closest2),
+                    to_string(atoms.names[pair[1]]), remedy, nearest));
+}
+
+}  // namespace palpa

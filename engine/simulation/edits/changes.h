@@ -1,0 +1,45 @@
+// What several edits do to a world.
+#pragma once
+#include "ecs/world.h"
+#include "simulation/components.h"
+#include "simulation/named_parts.h"
+
+#include <cstddef>
+#include <string>
+#include <utility>
+
+namespace palpa {
+
+// Rebuilds the solver and the contact models from where everything is.
+void settle_edit(World& world);
+
+// Changes a copy, which takes the world's place only if all went well.
+template <class Change>
+void edit_whole(World& world, const Change& change) {
+    World changed = world;
+    change(changed);
+    settle_edit(changed);
+    world = std::move(changed);
+}
+
+// The hand of this number, from 0. Refuses one that the world does not have.
+Entity find_hand(const World& world, std::size_t hand);
+
+// Another hand that holds the molecule; none without one.
+Entity other_holder(const World& world, Entity hand, Entity molecule);
+
+// Makes a molecule mobile that a spring is to move.
+void free_for_spring(Mobility& mobility);
+
+// The hand releases what it holds, which gets back its mobility.
+void release(World& world, Entity hand);
+
+// Gives the contact model another start: the servo puts the molecule where the model says.
+void take_hold_anew(World& world, Entity hand);
+
+// Refuses a place where other molecules are: nothing that is not bonded comes as near, and from
+// there forces would tear molecules apart. `remedy`: what would be right.
+void check_room(const AtomTable& atoms, AtomRange added, const std::string& name,
+                const std::string& remedy);
+
+}  // namespace palpa

@@ -1,0 +1,10 @@
+#include "scene/edits.h"
+#include "simulation/edits/changes.h"
+
+namespace palpa {
+
+void PinEdit::apply(World& world, std::size_t /*hand*/) const {
+    world.set(world.create(), build_mark(world, *this));
+}
+
+}  // namespace palpa
