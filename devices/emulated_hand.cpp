@@ -9,13 +9,14 @@ namespace palpa {
 
 EmulatedOmniSettings build_emulated_omni(const SceneDescription& scene, const HandScript& script,
                                          std::size_t slot) {
+    const DeviceDescription& device = device_of(scene, slot);
     return {
-        .dynamics = {scene.device.inertia_kg, scene.device.viscosity_N_s_per_m},
-        .friction_newton = scene.device.friction_N,
-        .encoder_step_m = scene.device.encoder_step_mm * 1e-3,
-        .hand = hand_model(list_hands(scene).at(slot).hand.grip),
+        .dynamics = {device.inertia_kg, device.viscosity_N_s_per_m},
+        .friction_newton = device.friction_N,
+        .encoder_step_m = device.encoder_step_mm * 1e-3,
+        .hand = hand_model(scene.hands.at(slot).grip),
         .script = script,
-        .servo_delay_ticks = static_cast<int>(scene.device.servo_delay_ticks),
+        .servo_delay_ticks = static_cast<int>(device.servo_delay_ticks),
     };
 }
 

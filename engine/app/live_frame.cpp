@@ -79,7 +79,8 @@ LiveFrame LiveFrameBuilder::build(const LiveSimulation& simulation) {
     frame.legend = find_legend(world, view_);
     frame.readout.holds_something = frame.hands.front().held.count > 0;
     frame.readout.contact = contacts.front();
-    frame.readout.error_pN = find_error_estimate(world);
+    for (const Entity hand : find_hands(world))
+        frame.readout.error_pN = std::max(frame.readout.error_pN, find_error_estimate(world, hand));
     if (const AccuracyController* const accuracy = find_accuracy_controller(world)) {
         frame.readout.error_pN = accuracy->error();
         frame.readout.work_budget = accuracy->work_budget();

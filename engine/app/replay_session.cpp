@@ -194,14 +194,14 @@ void ReplaySession::post_frame() {
     const auto seconds = [](std::size_t ticks) {
         return static_cast<double>(ticks) * servo_tick_s;
     };
-    const Coupling& coupling = simulation.world().resource<Coupling>();
     frame.readout.paused = is_paused_;
-    frame.readout.replay = ReplayState{seconds(player_->next_tick()),
-                                       seconds(journal_.ticks.size()),
-                                       speed_,
-                                       is_paused_,
-                                       describe_verdict(),
-                                       {coupling.description, simulation.scene().period_ms}};
+    frame.readout.replay =
+        ReplayState{seconds(player_->next_tick()),
+                    seconds(journal_.ticks.size()),
+                    speed_,
+                    is_paused_,
+                    describe_verdict(),
+                    {coupling_of(simulation.scene(), 0), simulation.scene().period_ms}};
     frames_.post(frame);
 }
 

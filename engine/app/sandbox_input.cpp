@@ -189,7 +189,7 @@ void Sandbox::rest_all() {
 void Sandbox::exchange_hands() {
     if (hands_.size() < 2)
         return notice(translated(
-            "this scene has one hand; a table [second.grab] in the scene file adds a second"));
+            "this scene has one hand; another table [[hand]] in the scene file adds a second"));
     if (holding_) clutch(led_);
     led_ = by_keys();
     if (holding_) engage(led_);

@@ -19,7 +19,7 @@ struct FileVersion {
 // The versions that this program writes; it reads those of the same major number.
 // Scene: scene.toml, its key `format`, of this version where it is not given. Recording: columns of
 // trace.csv and keys of summary.json, the number is in session.toml. Journal: journal.txt.
-inline constexpr FileVersion scene_version{2, 1}, recording_version{2, 1}, journal_version{2, 2};
+inline constexpr FileVersion scene_version{2, 2}, recording_version{2, 1}, journal_version{2, 2};
 
 // "2.0".
 std::string to_string(FileVersion version);
@@ -27,7 +27,7 @@ std::string to_string(FileVersion version);
 // Of "2.0" or "2"; nothing else is one.
 std::optional<FileVersion> find_version(std::string_view text);
 
-// "scene 2.1, recording 2.1, journal 2.2".
+// "scene 2.2, recording 2.1, journal 2.2".
 std::string list_file_versions();
 
 // Throws LoadError for a version of another major number.

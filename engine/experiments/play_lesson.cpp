@@ -49,7 +49,7 @@ std::vector<PathPoint> draw_wander(double seconds, std::uint64_t seed) {
 }
 
 HandDescription hand_of(const SceneDescription& scene, LessonPlayer player, std::uint64_t seed) {
-    HandDescription hand = scene.hand;
+    HandDescription hand = scene.hands.front();
     hand.release_s.reset();
     hand.kick_N_s = 0;
     hand.stroke = player == LessonPlayer::Operator ? Stroke::Lead : Stroke::Path;
@@ -153,8 +153,8 @@ public:
           lesson_(scene.lesson),
           meter_(scene, world_),
           edits_(scene),
-          hands_{{hand_->device(), build_servo_settings(scene, world_, hand_->device().spec()),
-                  local_contact_of(world_)}} {
+          hands_{{hand_->device(), build_servo_settings(scene, world_, 0, hand_->device().spec()),
+                  contact_at(world_, 0)}} {
         result_.steps.resize(scene.lesson.size());
     }
 
@@ -167,7 +167,7 @@ public:
             make_edits();
             (void)step_world(world_, {poses, felt});
             meter_.measure(world_);
-            return std::vector{local_contact_of(world_)};
+            return std::vector{contact_at(world_, 0)};
         };
         const auto on_ticks = [&](std::span<const ServoTick> now) {
             const std::size_t before = lesson_.current();
@@ -189,7 +189,7 @@ private:
     void note(const ServoTick& tick) {
         ++ticks_;
         if (lesson_.is_done()) return;
-        const CouplingMode mode = world_.resource<Coupling>().description.mode;
+        const CouplingMode mode = coupling_of(world_, hand_at(world_, 0)).description.mode;
         lesson_.update(read_tick(tick), mode, meter_.measures().values);
         const LessonStepDescription& step = lesson_.steps()[lesson_.current()];
         if (player_ == LessonPlayer::Operator && step.question && has_begun_)
@@ -263,8 +263,7 @@ double lesson_seconds(const SceneDescription& scene) noexcept {
 
 LessonResult play_lesson(SceneDescription scene, LessonPlayer player, LessonDevice device,
                          std::uint64_t seed, const std::function<void(double)>& progress) {
-    scene.hand = hand_of(scene, player, seed);
-    scene.second.reset();
+    scene.hands = {hand_of(scene, player, seed)};
     LessonPlay play(scene, player, device, seed);
     return play.run(progress);
 }

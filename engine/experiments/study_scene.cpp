@@ -70,7 +70,7 @@ std::string format_line(const StudyOptions& options) {
 
 void check_study(const StudyOptions& options) {
     const SceneDescription scene = read_study_scene(options, {});
-    if (!hand_model(scene.hand.grip)) {
+    if (!hand_model(scene.hands.front().grip)) {
         throw LoadError(scene.place_of("hand.grip"),
                         "is \"none\", so nobody moves the handle; expected a grip that holds it, "
                         "such as \"medium\"");

@@ -1,5 +1,6 @@
 // One tick of the 1 kHz servo: reading, clutch, contact model, force law, safety, force.
 #pragma once
+#include "core/hands.h"
 #include "haptics/device.h"
 #include "haptics/exchange.h"
 #include "haptics/gains.h"
@@ -90,8 +91,6 @@ struct ServoTick {
 [[nodiscard]] ServoTick step_servo(const ServoSettings& settings, ServoState& state,
                                    Exchange& exchange, const DeviceReading& reading, double now_s,
                                    LiveMolecules live = {}) noexcept;
-
-inline constexpr std::size_t most_hands = 4;
 
 // One hand of several, with its own device; its slot is its place in the list.
 struct ServoHand {

@@ -113,13 +113,11 @@ void check_motions(const SceneDescription& scene,
         const std::string key = "molecules." + molecule.name + ".motion";
         const bool by_itself = molecule.motion == Motion::Fixed || molecule.motion == Motion::Free;
         if (!by_itself && std::ranges::find(grabbed, &molecule) == grabbed.end()) {
-            problems.add(
-                problems.place_of(key),
-                fmt::format("'{}' is \"{}\", but {}; expected fixed or free", key,
-                            name_of(molecule.motion),
-                            grabbed.size() > 1
-                                ? "the hands move only grab.molecule and second.grab.molecule"
-                                : "the hand moves only grab.molecule"));
+            problems.add(problems.place_of(key),
+                         fmt::format("'{}' is \"{}\", but {}; expected fixed or free", key,
+                                     name_of(molecule.motion),
+                                     grabbed.size() > 1 ? "no hand holds it (hand[N].grab.molecule)"
+                                                        : "the hand moves only grab.molecule"));
         }
         if (molecule.motion == Motion::AlongX && scene.has_statics()) {
             problems.add(problems.place_of(key),
@@ -246,18 +244,21 @@ bool is_engine_address(std::string_view address) {
 void check_edits(const SceneDescription& scene, Problems& problems) {
     if (problems.any()) return;  // of a key that is wrong nothing was kept
     for (std::size_t i = 0; i < scene.edits.size(); ++i)
-        check_edit(scene.edits[i], scene.second.has_value(), fmt::format("edits[{}].", i + 1),
-                   problems);
+        check_edit(scene.edits[i], scene.hands.size(), fmt::format("edits[{}].", i + 1), problems);
 }
 
-void check_edit(const EditDescription& edit, bool has_second, const std::string& path,
+void check_edit(const EditDescription& edit, std::size_t hands, const std::string& path,
                 Problems& problems) {
     const std::string whose = path + "hand";
-    if (edit.hand == 1 && !has_second) {
-        problems.add(problems.place_of(whose),
-                     fmt::format("'{}' is \"second\", but the scene has one hand; expected "
-                                 "\"first\", or a table [second.grab]",
-                                 whose));
+    if (edit.hand >= hands) {
+        problems.add(
+            problems.place_of(whose),
+            fmt::format(
+                "'{}' is \"{}\", but the scene has {}; expected \"first\"{}, or "
+                "another table [[hand]]",
+                whose, edit_hand_names.at(edit.hand),
+                hands == 1 ? "one hand" : fmt::format("{} hands", hands),
+                hands == 1 ? "" : fmt::format(" to \"{}\"", edit_hand_names.at(hands - 1))));
     }
     const EditAction& action = edit.action;
     const std::string key = path + std::string(edit_names[action.index()]);
@@ -406,31 +407,27 @@ void check_ranges(const SceneDescription& scene, Problems& problems) {
 
 }  // namespace
 
-void check_coupling(const CouplingDescription& c, Problems& problems) {
-    const auto check = [&](bool right, const std::string& key, const std::string& what) {
-        if (!right) problems.add(problems.place_of(key), what);
+void check_coupling(const std::string& table, const CouplingDescription& c, Problems& problems) {
+    const auto check = [&](bool right, std::string_view name, const std::string& what) {
+        const std::string key = fmt::format("{}.{}", table, name);
+        if (!right) problems.add(problems.place_of(key), fmt::format("'{}' {}", key, what));
     };
-    check(c.F_h2_N > c.F_h1_N, "coupling.F_h2_N",
-          fmt::format("'coupling.F_h2_N' is {} N; expected more than F_h1_N, {} N", c.F_h2_N,
-                      c.F_h1_N));
-    check(c.A_d_max >= c.A_d_min, "coupling.A_d_max",
-          fmt::format("'coupling.A_d_max' is {}; expected A_d_min, {}, or more", c.A_d_max,
-                      c.A_d_min));
-    check(c.F_hi_nN * 1e3 > 2 * c.F_lo_pN, "coupling.F_hi_nN",
-          fmt::format("'coupling.F_hi_nN' is {} nN; expected more than twice F_lo_pN, {} pN",
-                      c.F_hi_nN, c.F_lo_pN));
+    check(c.F_h2_N > c.F_h1_N, "F_h2_N",
+          fmt::format("is {} N; expected more than F_h1_N, {} N", c.F_h2_N, c.F_h1_N));
+    check(c.A_d_max >= c.A_d_min, "A_d_max",
+          fmt::format("is {}; expected A_d_min, {}, or more", c.A_d_max, c.A_d_min));
+    check(c.F_hi_nN * 1e3 > 2 * c.F_lo_pN, "F_hi_nN",
+          fmt::format("is {} nN; expected more than twice F_lo_pN, {} pN", c.F_hi_nN, c.F_lo_pN));
     if (const auto range = c.feel_pN) {
         const auto [weakest, strongest] = *range;
-        check(strongest > weakest, "coupling.feel_pN",
-              fmt::format("'coupling.feel_pN' is [{}, {}]; expected the weaker force first",
-                          weakest, strongest));
-        check(c.mode == CouplingMode::Guarded, "coupling.feel_pN",
-              fmt::format("'coupling.feel_pN' applies to guarded coupling, but coupling.mode is "
-                          "{}; expected mode = \"guarded\", or no feel_pN",
-                          coupling_mode_names[static_cast<std::size_t>(c.mode)]));
-        check(c.clamp_N >= truncation_newton, "coupling.clamp_N",
-              fmt::format("'coupling.clamp_N' is {} N, but with feel_pN forces reach {} N; "
-                          "expected that or more",
+        check(strongest > weakest, "feel_pN",
+              fmt::format("is [{}, {}]; expected the weaker force first", weakest, strongest));
+        check(c.mode == CouplingMode::Guarded, "feel_pN",
+              fmt::format("applies to guarded coupling, but {}.mode is {}; expected mode = "
+                          "\"guarded\", or no feel_pN",
+                          table, coupling_mode_names[static_cast<std::size_t>(c.mode)]));
+        check(c.clamp_N >= truncation_newton, "clamp_N",
+              fmt::format("is {} N, but with feel_pN forces reach {} N; expected that or more",
                           c.clamp_N, truncation_newton));
     }
 }
@@ -438,10 +435,13 @@ void check_coupling(const CouplingDescription& c, Problems& problems) {
 void check_scene(const SceneDescription& scene, Problems& problems) {
     check_grab(scene, problems);
     if (scene.engine) check_engine(*scene.engine, problems);
-    check_coupling(scene.coupling, problems);
+    check_coupling("coupling", scene.coupling, problems);
     check_ranges(scene, problems);
-    for (const HandTables& hand : list_hands(scene))
+    for (const HandTables& hand : list_hands(scene)) {
         check_hand(hand, scene.engine.has_value(), problems);
+        if (hand.hand.coupling)
+            check_coupling(hand.hand_key + ".coupling", *hand.hand.coupling, problems);
+    }
     check_view(scene.view, scene, problems);
     check_edits(scene, problems);
 }

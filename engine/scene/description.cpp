@@ -1,5 +1,6 @@
 #include "scene/description.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 
 namespace palpa {
@@ -11,7 +12,8 @@ TextPlace SceneDescription::place_of(std::string_view key) const {
 
 bool SceneDescription::has_statics() const {
     if (engine) return false;
-    const bool by_spring = !grab.atom.empty() || (second && !second->grab.atom.empty());
+    const bool by_spring = std::ranges::any_of(
+        hands, [](const HandDescription& hand) { return !hand.grab.atom.empty(); });
     return by_spring || std::ranges::any_of(molecules, [](const MoleculeDescription& m) {
                return m.shape == Shape::Flexible || m.motion == Motion::TranslateAndTurn ||
                       m.motion == Motion::Free;
@@ -25,11 +27,31 @@ RelaxMethod method_of(const StaticsDescription& statics) noexcept {
 }
 
 std::vector<HandTables> list_hands(const SceneDescription& scene) {
-    std::vector<HandTables> hands{{"grab", "hand", scene.grab, scene.hand}};
-    if (scene.second) {
-        hands.push_back({"second.grab", "second.hand", scene.second->grab, scene.second->hand});
+    std::vector<HandTables> tables;
+    for (const HandDescription& hand : scene.hands) {
+        const std::string key = fmt::format("hand[{}]", tables.size() + 1);
+        tables.push_back({key + ".grab", key, hand.grab, hand});
     }
-    return hands;
+    if (tables.size() == 1) {
+        tables.front().grab_key = "grab";
+        tables.front().hand_key = "hand";
+    }
+    return tables;
+}
+
+const DeviceDescription& device_of(const SceneDescription& scene, std::size_t hand) {
+    const std::optional<DeviceDescription>& own = scene.hands.at(hand).device;
+    return own ? *own : scene.device;
+}
+
+const CouplingDescription& coupling_of(const SceneDescription& scene, std::size_t hand) {
+    const std::optional<CouplingDescription>& own = scene.hands.at(hand).coupling;
+    return own ? *own : scene.coupling;
+}
+
+CouplingDescription& coupling_of(SceneDescription& scene, std::size_t hand) {
+    std::optional<CouplingDescription>& own = scene.hands.at(hand).coupling;
+    return own ? *own : scene.coupling;
 }
 
 }  // namespace palpa

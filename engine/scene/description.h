@@ -126,36 +126,14 @@ struct PathPoint {
     friend bool operator==(const PathPoint&, const PathPoint&) = default;
 };
 
-struct HandDescription {
-    HandGrip grip = HandGrip::Medium;
-    Stroke stroke = Stroke::InOut;
-    std::optional<double> start_angstrom;
-    std::array<double, 3> start_offset_angstrom{};
-    double peak_nN = 3;
-    double stroke_s = 3;
-    double pause_s = 1;
-    std::int64_t cycles = 1;
-    std::optional<double> release_s;
-    double kick_N_s = 0;
-    std::vector<PathPoint> path;
-
-    friend bool operator==(const HandDescription&, const HandDescription&) = default;
-};
-
-// A second hand on a device like that of the first, with the same coupling.
-struct SecondHand {
-    GrabDescription grab;
-    HandDescription hand;
-
-    friend bool operator==(const SecondHand&, const SecondHand&) = default;
-};
-
 struct DeviceDescription {
     double inertia_kg = 0.045;
     double viscosity_N_s_per_m = 0.1;
     double friction_N = 0.26;
     double encoder_step_mm = 0.055;
     std::int64_t servo_delay_ticks = 1;
+
+    friend bool operator==(const DeviceDescription&, const DeviceDescription&) = default;
 };
 
 struct CouplingDescription {
@@ -183,6 +161,26 @@ struct CouplingDescription {
     Engage engage = Engage::AtOnce;
 
     friend bool operator==(const CouplingDescription&, const CouplingDescription&) = default;
+};
+
+// A hand: what it holds, what it does, and how it feels.
+struct HandDescription {
+    GrabDescription grab{};
+    HandGrip grip = HandGrip::Medium;
+    Stroke stroke = Stroke::InOut;
+    std::optional<double> start_angstrom;
+    std::array<double, 3> start_offset_angstrom{};
+    double peak_nN = 3;
+    double stroke_s = 3;
+    double pause_s = 1;
+    std::int64_t cycles = 1;
+    std::optional<double> release_s;
+    double kick_N_s = 0;
+    std::vector<PathPoint> path;
+    std::optional<DeviceDescription> device{};      // unset: the scene's
+    std::optional<CouplingDescription> coupling{};  // unset: the scene's
+
+    friend bool operator==(const HandDescription&, const HandDescription&) = default;
 };
 
 // A question with one right answer; each answer is explained once it was chosen.
@@ -295,11 +293,9 @@ struct SceneDescription {
     JointsDescription joints;
     StaticsDescription statics;
     std::optional<EngineDescription> engine;
-    GrabDescription grab;
-    HandDescription hand;
-    std::optional<SecondHand> second;
-    DeviceDescription device;
-    CouplingDescription coupling;
+    std::vector<HandDescription> hands{HandDescription{}};  // one to most_hands
+    DeviceDescription device;                               // of hands without their own
+    CouplingDescription coupling;                           // of hands without their own
     ViewDescription view;
     std::vector<LessonStepDescription> lesson;  // in the order of the file
     std::vector<EditDescription> edits;         // in the order of the file
@@ -321,14 +317,20 @@ struct SceneDescription {
     bool has_statics() const;
 };
 
-// One of the hands, with the tables that say what it holds and does: "grab", "second.grab".
+// One of the hands, with the tables that say what it holds and does: "grab" and "hand" of the only
+// one, "hand[2].grab" and "hand[2]" of several.
 struct HandTables {
     std::string grab_key, hand_key;
     const GrabDescription& grab;
     const HandDescription& hand;
 };
 
-// The first, and the second where there is one. They are the scene's, which must outlive them.
+// All hands in the order of their devices. They are the scene's, which must outlive them.
 std::vector<HandTables> list_hands(const SceneDescription& scene);
+
+// The device and the coupling of a hand, counted from 0.
+const DeviceDescription& device_of(const SceneDescription& scene, std::size_t hand);
+const CouplingDescription& coupling_of(const SceneDescription& scene, std::size_t hand);
+CouplingDescription& coupling_of(SceneDescription& scene, std::size_t hand);
 
 }  // namespace palpa

@@ -2,6 +2,7 @@
 // history are in scene/edits/, what it does to a world in simulation/edits/. Scene files
 // ([[edits]]), commands, journals, undo and windows go by this list.
 #pragma once
+#include "core/hands.h"
 #include "core/load_error.h"
 #include "scene/edits/add.h"
 #include "scene/edits/appearance.h"
@@ -73,11 +74,12 @@ inline std::vector<std::string_view> list_edits_with_engine() {
     return list_with_engine(static_cast<const EditAction*>(nullptr));
 }
 
-inline constexpr std::array<std::string_view, 2> edit_hand_names{"first", "second"};
+inline constexpr std::array<std::string_view, most_hands> edit_hand_names{"first", "second",
+                                                                          "third", "fourth"};
 
 struct EditDescription {
     double at_s = 0;       // applied before the first step at or after this time
-    std::size_t hand = 0;  // hand that makes it: 0 the first, 1 the second
+    std::size_t hand = 0;  // hand that makes it, from 0
     EditAction action;
     TextPlace place;  // in the scene file, for messages
 };

@@ -30,8 +30,7 @@ struct Field {
     bool may_be_empty = false;  // a required text
     bool may_be_unset = false;  // three numbers
     TextForm form = TextForm::Any;
-    bool is_inline = false;      // a table in braces
-    std::string_view like = {};  // a table with the keys of that one, which is documented
+    bool is_inline = false;  // a table in braces
 };
 
 class FieldVisitor {
@@ -56,6 +55,8 @@ public:
                                             std::size_t chosen) = 0;
     // Whether to visit an optional part; a reader looks into the file.
     virtual bool is_there(const Field& field, bool there) = 0;
+    // Whether a table is given as a list of such tables; a reader looks into the file.
+    virtual bool is_list(const Field& field, bool list) = 0;
     // Whether keys are being listed for documentation: then every table exists.
     virtual bool is_listing() const noexcept { return false; }
 

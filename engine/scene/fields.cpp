@@ -6,6 +6,8 @@
 #include "scene/view_fields.h"
 
 #include <fmt/format.h>
+#include <algorithm>
+#include <cstddef>
 #include <numeric>
 #include <utility>
 
@@ -125,8 +127,8 @@ void visit_molecules(FieldVisitor& v, std::vector<MoleculeDescription>& molecule
     v.leave_table();
 }
 
-void visit_grab(FieldVisitor& v, const Field& table, GrabDescription& g, bool is_remote) {
-    v.enter_table(table);
+void visit_grab(FieldVisitor& v, GrabDescription& g, bool is_remote) {
+    v.enter_table({.key = "grab", .meaning = "what the hand holds", .required = true});
     v.text({.key = "molecule",
             .meaning = "name of the molecule that the hand moves; \"\": the hand holds nothing",
             .required = true,
@@ -167,8 +169,7 @@ void visit_grab(FieldVisitor& v, const Field& table, GrabDescription& g, bool is
     v.leave_table();
 }
 
-void visit_hand(FieldVisitor& v, const Field& table, HandDescription& h) {
-    v.enter_table(table);
+void visit_hand_keys(FieldVisitor& v, HandDescription& h) {
     choose(
         v,
         {.key = "grip", .meaning = "how firmly the hand holds the handle; none: nobody holds it"},
@@ -228,22 +229,6 @@ void visit_hand(FieldVisitor& v, const Field& table, HandDescription& h) {
             .lowest = -1e5,
             .highest = 1e5},
            h.path);
-    v.leave_table();
-}
-
-void visit_second(FieldVisitor& v, std::optional<SecondHand>& second, bool is_remote) {
-    const Field table{.key = "second", .meaning = "a second hand"};
-    if (!v.is_there(table, second.has_value())) return;
-    if (!second) second.emplace();
-    v.enter_table(table);
-    visit_grab(v,
-               {.key = "grab",
-                .meaning = "what a second hand holds, on a device of its own",
-                .required = true,
-                .like = "grab"},
-               second->grab, is_remote);
-    visit_hand(v, {.key = "hand", .meaning = "what it does", .like = "hand"}, second->hand);
-    v.leave_table();
 }
 
 void visit_engine(FieldVisitor& v, std::optional<EngineDescription>& engine) {
@@ -342,6 +327,45 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
     v.enter_table({.key = "coupling", .meaning = "coupling between molecule and hand"});
     visit_coupling_keys(v, c);
     v.leave_table();
+}
+
+// A device or a coupling that a hand may have for itself, which begins as the scene's.
+template <class Part, class Visit>
+void visit_own(FieldVisitor& v, const Field& table, const Part& of_scene, std::optional<Part>& own,
+               const Visit& visit) {
+    if (!v.is_there(table, own.has_value())) return;
+    if (!own) own = of_scene;
+    visit(v, *own);
+}
+
+void visit_hands(FieldVisitor& v, SceneDescription& scene, bool is_remote) {
+    const Field list{.key = "hand",
+                     .meaning =
+                         "the Nth hand where there are several: [[hand]] with [hand.grab], "
+                         "and [hand.device] and [hand.coupling] where its own differ",
+                     .lowest = 1,
+                     .highest = most_hands};
+    if (!v.is_list(list, scene.hands.size() > 1)) {
+        visit_grab(v, scene.hands.front().grab, is_remote);
+        v.enter_table({.key = "hand", .meaning = "the hand on the emulated device"});
+        visit_hand_keys(v, scene.hands.front());
+        return v.leave_table();
+    }
+    std::size_t count = scene.hands.size();
+    v.list_entries(list, count);
+    scene.hands.resize(std::max<std::size_t>(count, 1));
+    for (std::size_t i = 0; i < count; ++i) {
+        HandDescription& hand = scene.hands[i];
+        TextPlace place = scene.place_of("hand");
+        v.enter_entry(list, i, place);
+        visit_hand_keys(v, hand);
+        visit_grab(v, hand.grab, is_remote);
+        visit_own(v, {.key = "device", .meaning = "its device"}, scene.device, hand.device,
+                  visit_device);
+        visit_own(v, {.key = "coupling", .meaning = "its coupling"}, scene.coupling, hand.coupling,
+                  visit_coupling);
+        v.leave_table();
+    }
 }
 
 void visit_question(FieldVisitor& v, std::optional<LessonQuestion>& question) {
@@ -454,12 +478,6 @@ public:
             inline_keys_.clear();
             return;
         }
-        if (!field.like.empty()) {
-            notes.push_back({fmt::format("{}{}.KEY", path_, field.key),
-                             fmt::format("as `{}.KEY`", field.like), "as there",
-                             std::string(field.meaning)});
-        }
-        is_documented_ = !field.like.empty();
         path_ += std::string(field.key) + ".";
     }
     void leave_table() override {
@@ -468,7 +486,6 @@ public:
             inline_table_.reset();
             return add(table, fmt::format("table of {}", fmt::join(inline_keys_, ", ")), "unset");
         }
-        is_documented_ = false;
         path_.pop_back();
         path_.resize(path_.rfind('.') == std::string::npos ? 0 : path_.rfind('.') + 1);
     }
@@ -486,6 +503,11 @@ public:
         return all;
     }
     bool is_there(const Field& /*field*/, bool /*there*/) override { return true; }
+    bool is_list(const Field& field, bool /*list*/) override {
+        notes.push_back({fmt::format("{}[N].KEY", field.key), fmt::format("as `{}.KEY`", field.key),
+                         "as there", std::string(field.meaning)});
+        return false;
+    }
     bool is_listing() const noexcept override { return true; }
     void real(const Field& field, double& value) override {
         add(field, fmt::format("number{}", range(field)), fmt::format("{}", value));
@@ -546,14 +568,12 @@ private:
     }
     void add(const Field& field, std::string type, std::string fallback) {
         if (inline_table_) return inline_keys_.push_back(field.key);
-        if (is_documented_) return;
         notes.push_back({path_ + std::string(field.key), std::move(type),
                          field.required ? "required" : std::move(fallback),
                          std::string(field.meaning)});
     }
 
     std::string path_;
-    bool is_documented_ = false;         // the table under way is like one before
     std::optional<Field> inline_table_;  // that is under way: one note with all its keys
     std::vector<std::string_view> inline_keys_;
 };
@@ -591,12 +611,9 @@ void visit_scene(FieldVisitor& v, SceneDescription& scene) {
     visit_pins(v, scene.pins);
     visit_joints(v, scene.joints);
     visit_statics(v, scene.statics);
-    visit_grab(v, {.key = "grab", .meaning = "what the hand holds", .required = true}, scene.grab,
-               is_remote);
-    visit_hand(v, {.key = "hand", .meaning = "the hand on the emulated device"}, scene.hand);
-    visit_second(v, scene.second, is_remote);
     visit_device(v, scene.device);
     visit_coupling(v, scene.coupling);
+    visit_hands(v, scene, is_remote);
     visit_view(v, scene.view);
     visit_lesson(v, scene.lesson);
     v.enter_table({.key = "run", .meaning = "a headless run"});

@@ -8,6 +8,7 @@
 #include "scene/edit_fields.h"
 #include "scene/fields.h"
 #include "scene/find_scene.h"
+#include "scene/hand_tables.h"
 #include "scene/problems.h"
 #include "scene/run_commands.h"
 
@@ -214,7 +215,11 @@ public:
         const toml::node* const node = find(field);
         if (!node) return;
         const toml::array* const list = node->as_array();
-        if (list) {
+        const auto size = static_cast<double>(list ? list->size() : 0);
+        if (list && field.highest > 0 && (size < field.lowest || size > field.highest)) {
+            problem(*node, fmt::format("'{0}' has {1} entries; expected {2} to {3} tables [[{0}]]",
+                                       full_key(field.key), size, field.lowest, field.highest));
+        } else if (list) {
             count = list->size();
         } else {
             problem(*node, fmt::format("'{0}' is {1}; expected a list of tables, [[{0}]]",
@@ -263,6 +268,10 @@ public:
     }
 
     bool is_there(const Field& field, bool /*there*/) override { return find(field) != nullptr; }
+    bool is_list(const Field& field, bool /*list*/) override {
+        const toml::node* const node = find(field);
+        return node && node->is_array();
+    }
 
     void real(const Field& field, double& value) override {
         const toml::node* const node = find_value(field);
@@ -649,7 +658,7 @@ std::string full_setting_key(const std::string& key, const TextPlace& place) {
     std::vector<FieldNote> fields = list_fields();
     std::erase_if(fields, [](const FieldNote& field) {
         // A bare name is one of the first hand.
-        return field.key.starts_with("edits.") || field.key.starts_with("second.");
+        return field.key.starts_with("edits.") || field.key.starts_with("hand[");
     });
     for (const FieldNote& field : fields) {
         const std::string_view last = std::string_view(field.key).substr(field.key.rfind('.') + 1);
@@ -673,19 +682,6 @@ std::string full_setting_key(const std::string& key, const TextPlace& place) {
     }
     throw LoadError(place, fmt::format("'{}' can mean {}; expected the full key", key,
                                        fmt::join(matches, " or ")));
-}
-
-// Lays `from` over `onto`, table by table. Moves, since copies of a node forget where they stood.
-void merge(toml::table from, toml::table& onto) {
-    for (auto&& [key, node] : from) {
-        toml::table* const inner = node.as_table();
-        toml::node* const old = onto.get(key.str());
-        if (inner && old && old->is_table()) {
-            merge(std::move(*inner), *old->as_table());
-        } else {
-            node.visit([&, &k = key](auto& value) { onto.insert_or_assign(k, std::move(value)); });
-        }
-    }
 }
 
 // The value of a setting as TOML: as it stands, or what a person means by .5 and by a bare word.
@@ -732,8 +728,9 @@ void apply_setting(std::string_view origin, const std::string& setting, toml::ta
     const std::string value =
         setting_value(trimmed(std::string_view(setting).substr(equals + 1)), place);
     try {
-        merge(toml::parse(std::string_view(key + " = " + value), std::string_view(place.file)),
-              root);
+        const auto [table, inner] = find_table_of(key, place, root);
+        merge(toml::parse(std::string_view(inner + " = " + value), std::string_view(place.file)),
+              *table);
     } catch (const toml::parse_error&) {
         throw LoadError(place, fmt::format("'{}' is not a key", key));
     }
@@ -782,6 +779,7 @@ SceneDescription parse_scene(std::string_view text, const fs::path& file,
         throw LoadError({file.string(), 1, 1},
                         "an empty scene; expected [force_field], [molecules.NAME] and [grab]");
     }
+    gather_hands(root);
     bool allows_outside = false;
     for (const std::string& setting : settings) {
         if (setting == allow_outside) {
@@ -833,7 +831,10 @@ CouplingDescription read_coupling(const CouplingDescription& coupling,
 
 CouplingDescription with_settings(const CouplingDescription& coupling,
                                   std::span<const std::string> settings) {
-    return settings.empty() ? coupling : read_coupling(coupling, settings, check_coupling);
+    if (settings.empty()) return coupling;
+    return read_coupling(coupling, settings, [](const auto& read, Problems& problems) {
+        check_coupling("coupling", read, problems);
+    });
 }
 
 CouplingDescription parse_settings(std::span<const std::string> settings) {
@@ -842,7 +843,7 @@ CouplingDescription parse_settings(std::span<const std::string> settings) {
 
 EditDescription parse_edit(std::string_view text, const TextPlace& place) {
     SceneDescription scene;
-    scene.second.emplace();
+    scene.hands.resize(most_hands);
     try {
         const fs::path name = "edit";  // its lines count from its own start
         const toml::table root = parse_table(text, name);
@@ -904,7 +905,7 @@ RunCommand read_run_command(std::string_view line, const SceneDescription& scene
     visit_run_command(reader, command);
     const auto* const edit = std::get_if<EditAction>(&command.action);
     if (!problems.any())
-        check_edit({0, command.hand, edit ? *edit : EditAction(), {}}, scene.second.has_value(), "",
+        check_edit({0, command.hand, edit ? *edit : EditAction(), {}}, scene.hands.size(), "",
                    problems);
     reader.finish();
     (void)problems.finish();

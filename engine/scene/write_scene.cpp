@@ -70,6 +70,7 @@ public:
         return {chosen};
     }
     bool is_there(const Field& /*field*/, bool there) override { return there; }
+    bool is_list(const Field& /*field*/, bool list) override { return list; }
 
     void real(const Field& field, double& value) override { add(field, format_real(value)); }
     void optional_real(const Field& field, std::optional<double>& value) override {

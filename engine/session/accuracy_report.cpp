@@ -43,13 +43,15 @@ std::vector<std::string> UnmetRequirements::all() const {
     return all;
 }
 
-AccuracyLog::AccuracyLog(const SceneDescription& scene, const ServoSettings& servo)
-    : is_asked_(scene.coupling.feel_pN || scene.coupling.feel_within_pN),
-      period_us_(1e3 * scene.period_ms) {
-    report_.within_pN = scene.coupling.feel_within_pN;
+AccuracyLog::AccuracyLog(const SceneDescription& scene, std::size_t hand,
+                         const ServoSettings& servo)
+    : period_us_(1e3 * scene.period_ms) {
+    const CouplingDescription& coupling = coupling_of(scene, hand);
+    is_asked_ = coupling.feel_pN || coupling.feel_within_pN;
+    report_.within_pN = coupling.feel_within_pN;
     if (!servo.guarded) return;
     cap_N_per_m_ = servo.guarded->device_cap_N_per_m;
-    report_.range_pN = scene.coupling.feel_pN;
+    report_.range_pN = coupling.feel_pN;
     if (const auto range = report_.range_pN) {
         for (std::size_t i = 0; i < range->size(); ++i)
             report_.ends_newton[i] = hand_force(servo.guarded->force_law, (*range)[i] * 1e-12);
@@ -66,11 +68,11 @@ void AccuracyLog::add(const ServoTick& tick) noexcept {
         ++thermal_ticks_;
 }
 
-void AccuracyLog::add_step(const RelaxStepReport& relaxed) {
+void AccuracyLog::add_step(const RelaxStepReport& relaxed, std::optional<double> error_pN) {
     ++steps_;
     report_.active += static_cast<double>(relaxed.active);
     report_.steps += static_cast<double>(relaxed.steps);
-    if (const auto error_pN = relaxed.estimated_error_pN) add_error(*error_pN);
+    if (relaxed.estimated_error_pN && error_pN) add_error(*error_pN);
 }
 
 void AccuracyLog::add_answer(const ContactModel& answer) {

@@ -45,11 +45,13 @@ UnmetRequirements find_unmet(const AccuracyReport& report);
 // Gathers it tick by tick and step by step, in as much memory however long the run is.
 class AccuracyLog {
 public:
-    // Without range and error limit in the scene there is no report.
-    AccuracyLog(const SceneDescription& scene, const ServoSettings& servo);
+    // Of one hand, by its number from 0. Where its coupling requires no range and no error limit
+    // there is no report.
+    AccuracyLog(const SceneDescription& scene, std::size_t hand, const ServoSettings& servo);
 
     void add(const ServoTick& tick) noexcept;
-    void add_step(const RelaxStepReport& relaxed);
+    // `error_pN`: the last estimate for this hand, which counts if one ended in this step.
+    void add_step(const RelaxStepReport& relaxed, std::optional<double> error_pN);
     // Of a scene in which nothing moves by itself: the answer to the pose of the tick added last,
     // which the servo has rendered from the answer before. One of a hundred counts as an error
     // estimate.

@@ -60,7 +60,7 @@ double rms_of(double square, std::size_t count) {
 
 PoseComparison::PoseComparison(const World& world) {
     const AtomTable& atoms = world.resource<AtomTable>();
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     const std::vector<std::uint32_t> held = held_atoms(world, hand);
     held_ = find_symmetries(atoms, held);
     const Entity other = molecule_called(world, world.resource<GrabSettings>().measured_from);

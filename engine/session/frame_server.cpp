@@ -39,7 +39,7 @@ ImdServerOptions build_server_options(const ServeOptions& options, const World& 
 double find_potential(const World& world) {
     return has_mobile(world)
                ? find_energy(world)
-               : contact_of(world, first_hand(world)).answer.model.potential_kcal_per_mol;
+               : contact_of(world, hand_at(world, 0)).answer.model.potential_kcal_per_mol;
 }
 
 ImdFrame build_imd_frame(const World& world) {

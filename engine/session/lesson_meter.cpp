@@ -96,7 +96,7 @@ void LessonMeter::find_atoms(const World& world, std::size_t i) {
             sites.push_back(find_bond_sites(world.resource<AtomTable>(), chosen));
     }
     if (step.quantity == LessonQuantity::Way && step.of.empty())
-        found.push_back(held_atoms(world, first_hand(world)));
+        found.push_back(held_atoms(world, hand_at(world, 0)));
     if (step.quantity == LessonQuantity::Way && found.front().empty()) {
         throw LoadError(
             scene_.place_of(key),
@@ -124,7 +124,7 @@ void LessonMeter::measure(const World& world) {
 }
 
 void LessonMeter::add_work(const World& world) {
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     if (!world.find<Contact>(hand)) {
         last_.reset();
         return;

@@ -170,7 +170,7 @@ void LiveSimulation::obey(const LiveSettings& settings) {
 void LiveSimulation::set(const LiveSettings& settings) {
     readout_.problem.clear();
     if (can_build_laws(settings.coupling)) {
-        scene_.coupling = settings.coupling;
+        coupling_of(scene_, 0) = settings.coupling;
     } else {
         readout_.problem =
             "eq. 2 with these values cannot reach the slopes A_f_max and A_f_min, so the previous "
@@ -183,7 +183,7 @@ void LiveSimulation::set(const LiveSettings& settings) {
     } catch (const LoadError& error) {
         readout_.problem = error.what();
     }
-    set_coupling(scene_.coupling, world_);
+    set_couplings(scene_, world_);
     set_period(scene_, world_);
     post_orders();
 }
@@ -201,7 +201,7 @@ void LiveSimulation::obey(const Reset& reset) {
         readout_.problem = "reset is not possible: a remote engine moves the atoms";
         return;
     }
-    if (reset.start_angstrom) scene_.hand.start_angstrom = reset.start_angstrom;
+    if (reset.start_angstrom) scene_.hands.front().start_angstrom = reset.start_angstrom;
     const std::vector<std::uint32_t> last_starts = list_starts();
     renewals_.await();
     try {
@@ -358,10 +358,10 @@ void LiveSimulation::refuse(const EditDescription& edit, std::string why) {
 void LiveSimulation::publish_edit(bool settles) {
     readout_.problem.clear();
     if (history_.has_changed_coupling()) {
-        scene_.coupling = world_.resource<Coupling>().description;
+        keep_couplings(world_, scene_);
         ++readout_.undo.restored;
     }
-    set_coupling(scene_.coupling, world_);
+    set_couplings(scene_, world_);
     set_period(scene_, world_);
     publish_history();
     ++edition_;
@@ -374,7 +374,7 @@ void LiveSimulation::publish_edit(bool settles) {
 }
 
 void LiveSimulation::follow_unbinding() {
-    const bool is_held = world_.find<Grip>(first_hand(world_)) != nullptr;
+    const bool is_held = world_.find<Grip>(hand_at(world_, 0)) != nullptr;
     if (!has_mobile(world_) || !is_held || !places_atoms(world_)) return;
     const bool is_other = std::exchange(unbinding_edition_, edition_) != edition_;
     if (!unbinding_ || (is_other && !unbinding_->suits(world_))) {
@@ -413,7 +413,7 @@ void LiveSimulation::post(std::size_t slot, const LocalContactModel& contact) {
 // A hand takes hold quietly; laws that are exchanged glide.
 void LiveSimulation::post_order(std::size_t slot) {
     const DeviceSpec& device = devices_[slot].spec;
-    ServoOrder order{build_servo_settings(scene_, world_, device), restarts_,
+    ServoOrder order{build_servo_settings(scene_, world_, slot, device), restarts_,
                      all_stand_still() && readout_.paused, ++orders_[slot]};
     SafetySettings& safety = order.settings.safety;
     safety.starts_engaged = false;

@@ -104,7 +104,9 @@ private:
     void begin_pulls();
     void note_pulls();
     void publish_history();
-    PersonChoices choices() const { return {{scene_.coupling, scene_.period_ms}, additions_}; }
+    PersonChoices choices() const {
+        return {{coupling_of(scene_, 0), scene_.period_ms}, additions_};
+    }
     void follow_unbinding();
     void take_hold_anew(std::span<const std::uint32_t> last_starts);
     std::vector<std::uint32_t> list_starts() const;

@@ -24,21 +24,23 @@ constexpr double first_rest_s = 0.3;  // before the hand sets out, and between c
 constexpr double fastest_hand_m_per_s = 3;
 
 // Handle travel (m) that takes the molecule from `far` in to `near` (Å): midpoint sum of A_d.
-double handle_travel(const SceneDescription& scene, const World& world, Entity hand, double near,
-                     double far) {
-    const ServoSettings servo = build_servo_settings(scene, world);
+double handle_travel(const SceneDescription& scene, const World& world, std::size_t slot,
+                     double near, double far) {
+    const ServoSettings servo = build_servo_settings(scene, world, slot);
+    const Entity hand = hand_at(world, slot);
+    const CouplingLaws& laws = coupling_of(world, hand).laws;
     // Where A_d does not vary one step is enough, and a look at a large molecule takes
     // milliseconds.
-    const bool constant = !servo.guarded && std::holds_alternative<ConstantDisplacementLaw>(
-                                                world.resource<Coupling>().laws.displacement);
+    const bool constant =
+        !servo.guarded && std::holds_alternative<ConstantDisplacementLaw>(laws.displacement);
     const double fineness = moves_in_space(world, hand) ? 0.02 : 1e-3;  // Å
     const auto integral = [&](double from, double to, double step) {
         const auto steps = constant ? 1 : static_cast<int>(std::ceil((to - from) / step));
         const double width = (to - from) / steps;
         double sum = 0;
         for (int i = 0; i < steps; ++i)
-            sum += gain_where(servo, world,
-                              force_along_line_at(world, from + (i + 0.5) * width, hand));
+            sum +=
+                gain_where(servo, laws, force_along_line_at(world, from + (i + 0.5) * width, hand));
         return sum * width * units::metre_per_angstrom;
     };
     // Far out the gain hardly changes.
@@ -47,8 +49,10 @@ double handle_travel(const SceneDescription& scene, const World& world, Entity h
     return integral(near, near + calm, fineness) + integral(near + calm, far, 1);
 }
 
-HandScript plan_in_out(const SceneDescription& scene, const HandTables& tables, Entity entity,
-                       const World& world, double half_width_m) {
+HandScript plan_in_out(const SceneDescription& scene, std::size_t slot, const World& world,
+                       double half_width_m) {
+    const HandTables tables = list_hands(scene).at(slot);
+    const Entity entity = hand_at(world, slot);
     const std::string& key = tables.hand_key;
     if (!tables.grab.atom.empty()) {
         throw LoadError(
@@ -68,9 +72,9 @@ HandScript plan_in_out(const SceneDescription& scene, const HandTables& tables, 
                                     tables.hand.peak_nN, start, key, key));
     }
     const std::optional<HandModel> hand = hand_model(tables.hand.grip);
-    const double peak_felt = hand_force(world.resource<Coupling>().laws.force, peak_newton);
+    const double peak_felt = hand_force(coupling_of(world, entity).laws.force, peak_newton);
     const double bend = hand ? peak_felt / static_stiffness(*hand) : 0;
-    const double travel = handle_travel(scene, world, entity, *innermost, start) + bend;
+    const double travel = handle_travel(scene, world, slot, *innermost, start) + bend;
     const double outside = std::min(travel / 2, half_width_m - stop_margin_m);
 
     HandScript script;
@@ -123,7 +127,7 @@ HandScript plan_hand(const SceneDescription& scene, const World& world, double h
             script.path = {{0, 0}};
             break;
         case Stroke::InOut:
-            script = plan_in_out(scene, tables, find_hands(world).at(slot), world, half_width_m);
+            script = plan_in_out(scene, slot, world, half_width_m);
             break;
         case Stroke::Path:
             for (const auto& [time_s, place, turn] : hand.path) {

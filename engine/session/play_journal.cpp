@@ -149,7 +149,7 @@ private:
 
 JournalPlayer::JournalPlayer(const SceneDescription& scene, const Journal& journal,
                              const StageFunction& on_stage) {
-    const std::size_t hands = scene.second ? 2 : 1;
+    const std::size_t hands = scene.hands.size();
     if (journal.devices.size() > hands)
         fail(fmt::format("moves {} hands, but the scene has {}", journal.devices.size(), hands));
     player_ = std::make_unique<Player>(scene, journal, on_stage);

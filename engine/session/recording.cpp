@@ -449,6 +449,18 @@ nlohmann::ordered_json accuracy_as_json(const AccuracyReport& report) {
     return json;
 }
 
+// How one hand feels.
+void add_coupling(const SceneDescription& scene, std::size_t hand, nlohmann::ordered_json& json) {
+    const CouplingDescription& c = coupling_of(scene, hand);
+    json["mode"] = coupling_mode_names[static_cast<std::size_t>(c.mode)];
+    json["coupling"] = {
+        {"clamp_N", c.clamp_N},         {"F_h1_N", c.F_h1_N},     {"F_h2_N", c.F_h2_N},
+        {"F_0_nN", c.F_0_nN},           {"A_f_min", c.A_f_min},   {"A_f_max", c.A_f_max},
+        {"gamma_per_N", c.gamma_per_N}, {"F_off_pN", c.F_off_pN}, {"A_d_min", c.A_d_min},
+        {"A_d_max", c.A_d_max},         {"A_f", c.A_f},           {"A_d", c.A_d}};
+    json["friction_N"] = device_of(scene, hand).friction_N;
+}
+
 // What one hand felt and did.
 void add_felt(const Summary& hand, bool has_engine, nlohmann::ordered_json& json) {
     if (hand.ripple) {
@@ -518,17 +530,10 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
     json["scene"] = scene.title;
     json["scene_hash"] = scene_hash(scene);
     json["device"] = summary.device;
-    json["hand"] = grip_names[static_cast<std::size_t>(scene.hand.grip)];
-    json["stroke"] = stroke_names[static_cast<std::size_t>(scene.hand.stroke)];
-    json["mode"] = coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)];
+    json["hand"] = grip_names[static_cast<std::size_t>(scene.hands.front().grip)];
+    json["stroke"] = stroke_names[static_cast<std::size_t>(scene.hands.front().stroke)];
+    add_coupling(scene, 0, json);
     json["period_ms"] = scene.period_ms;
-    const CouplingDescription& c = scene.coupling;
-    json["coupling"] = {
-        {"clamp_N", c.clamp_N},         {"F_h1_N", c.F_h1_N},     {"F_h2_N", c.F_h2_N},
-        {"F_0_nN", c.F_0_nN},           {"A_f_min", c.A_f_min},   {"A_f_max", c.A_f_max},
-        {"gamma_per_N", c.gamma_per_N}, {"F_off_pN", c.F_off_pN}, {"A_d_min", c.A_d_min},
-        {"A_d_max", c.A_d_max},         {"A_f", c.A_f},           {"A_d", c.A_d}};
-    json["friction_N"] = scene.device.friction_N;
     json["seed"] = scene.seed;
     json["seconds"] = static_cast<double>(summary.ticks) / servo_rate_hz;
     json["steps"] = summary.steps;
@@ -580,7 +585,11 @@ std::string format_summary(const SceneDescription& scene, const Summary& summary
         const Summary& hand = summary.other_hands[i];
         nlohmann::ordered_json& other = json[fmt::format("hand_{}", i + 2)];
         other["device"] = hand.device;
+        other["hand"] = grip_names[static_cast<std::size_t>(scene.hands.at(i + 1).grip)];
+        other["stroke"] = stroke_names[static_cast<std::size_t>(scene.hands.at(i + 1).stroke)];
+        add_coupling(scene, i + 1, other);
         add_felt(hand, scene.engine.has_value(), other);
+        if (hand.accuracy) other["feel"] = accuracy_as_json(*hand.accuracy);
         add_safety(hand, other);
     }
     json["neglected"] = summary.neglected;

@@ -50,46 +50,47 @@ std::uint64_t count_ticks(const SceneDescription& scene) noexcept {
     return static_cast<std::uint64_t>(std::ceil(scene.seconds / servo_tick_s - 1e-9));
 }
 
-DeviceSpec describe_emulated_device(const SceneDescription& scene) {
+DeviceSpec describe_emulated_device(const SceneDescription& scene, std::size_t slot) {
     return {.name = "emulated device of the scene",
-            .viscosity_N_s_per_m = scene.device.viscosity_N_s_per_m,
+            .viscosity_N_s_per_m = device_of(scene, slot).viscosity_N_s_per_m,
             .half_workspace_m = Vec3::Constant(0.1),
             .is_real = false};
 }
 
-ServoSettings build_servo_settings(const SceneDescription& scene, const World& world) {
-    return build_servo_settings(scene, world, describe_emulated_device(scene));
+ServoSettings build_servo_settings(const SceneDescription& scene, const World& world,
+                                   std::size_t slot) {
+    return build_servo_settings(scene, world, slot, describe_emulated_device(scene, slot));
 }
 
 ServoSettings build_servo_settings(const SceneDescription& scene, const World& world,
-                                   const DeviceSpec& device) {
-    const CouplingDescription& c = world.resource<Coupling>().description;
-    ServoSettings settings{
-        world.resource<Coupling>().laws.force,
-        {.clamp_newton = c.clamp_N, .is_full = world.resource<Coupling>().is_guarded},
-        static_cast<int>(scene.device.servo_delay_ticks)};
+                                   std::size_t slot, const DeviceSpec& device) {
+    const Coupling& coupling = coupling_of(world, hand_at(world, slot));
+    const CouplingDescription& c = coupling.description;
+    const DeviceDescription& own = device_of(scene, slot);
+    ServoSettings settings{coupling.laws.force,
+                           {.clamp_newton = c.clamp_N, .is_full = coupling.is_guarded},
+                           static_cast<int>(own.servo_delay_ticks)};
     settings.safety.starts_engaged = c.engage == Engage::AtOnce;
     // Friction is lost twice on turning round, and the rest has to show (haptics/safety.h).
-    settings.safety.frozen_newton = 2 + 2 * scene.device.friction_N;
+    settings.safety.frozen_newton = 2 + 2 * own.friction_N;
     settings.half_workspace_m = device.half_workspace_m;
     if (device.is_real) {
         settings.safety.is_full = true;
         settings.safety.starts_engaged = false;
         limit_to(device, settings.safety);
     }
-    if (!world.resource<Coupling>().is_guarded) return settings;
+    if (!coupling.is_guarded) return settings;
     GuardedSettings& guarded = settings.guarded.emplace();
-    guarded.force_law = world.resource<Coupling>().laws.force;
-    guarded.displacement_law = world.resource<Coupling>().laws.displacement;
+    guarded.force_law = coupling.laws.force;
+    guarded.displacement_law = coupling.laws.displacement;
     guarded.gain_shape = c.gain_shape;
     guarded.workspace = build_workspace(c.workspace);
     guarded.half_workspace_m = device.half_workspace_m;
     guarded.damping_N_s_per_m =
-        guarded_damping(c.damping_N_s_per_m, scene.device.inertia_kg, settings.delay_ticks);
+        guarded_damping(c.damping_N_s_per_m, own.inertia_kg, settings.delay_ticks);
     // Take the scene's viscosity for a device that does not state its own.
     DeviceSpec known = device;
-    if (known.viscosity_N_s_per_m == 0)
-        known.viscosity_N_s_per_m = scene.device.viscosity_N_s_per_m;
+    if (known.viscosity_N_s_per_m == 0) known.viscosity_N_s_per_m = own.viscosity_N_s_per_m;
     guarded.device_cap_N_per_m = guarded.cap_N_per_m =
         guarded_cap(known, guarded.damping_N_s_per_m, settings.delay_ticks);
     // Where the scene says what must be felt, no tick feels more than the cap. Of 60 closed paths
@@ -101,7 +102,7 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const World& w
     }
     guarded.stop_newton = c.stop_nN * 1e-9;
     guarded.horizon_s = guarded_horizon(guarded.cap_N_per_m, guarded.damping_N_s_per_m,
-                                        scene.device.inertia_kg, settings.delay_ticks);
+                                        own.inertia_kg, settings.delay_ticks);
     return settings;
 }
 
@@ -113,17 +114,18 @@ void check_period(const DeviceSpec& device, double period_s) {
                                 1e3 * period_s, device.name, 1e3 * longest_real_period_s));
 }
 
-double gain_where(const ServoSettings& servo, const World& world, const Vec3& force_newton,
+double gain_where(const ServoSettings& servo, const CouplingLaws& laws, const Vec3& force_newton,
                   const Mat3& stiffness) noexcept {
     if (servo.guarded) return guarded_gain(*servo.guarded, force_newton, stiffness).A_d;
-    return displacement_gain(world.resource<Coupling>().laws.displacement, force_newton.norm());
+    return displacement_gain(laws.displacement, force_newton.norm());
 }
 
-double gain_where(const ServoSettings& servo, const World& world, const LineForce& line) noexcept {
+double gain_where(const ServoSettings& servo, const CouplingLaws& laws,
+                  const LineForce& line) noexcept {
     Mat3 stiffness = Mat3::Zero();
     stiffness(0, 0) = line.stiffness * units::newton_per_metre_per_kcal_per_mol_angstrom2;
-    return gain_where(servo, world,
-                      Vec3(line.force * units::newton_per_kcal_per_mol_angstrom, 0, 0), stiffness);
+    return gain_where(servo, laws, Vec3(line.force * units::newton_per_kcal_per_mol_angstrom, 0, 0),
+                      stiffness);
 }
 
 FeltStiffness stiffest_place(const SceneDescription& scene, const World& world,
@@ -132,13 +134,13 @@ FeltStiffness stiffest_place(const SceneDescription& scene, const World& world,
     const double peak_nN = list_hands(scene).at(slot).hand.peak_nN;
     if (!world.find<Grip>(hand)) return {};
     const Grip& grip = grip_of(world, hand);
-    const ServoSettings servo = build_servo_settings(scene, world);
+    const ServoSettings servo = build_servo_settings(scene, world, slot);
+    const CouplingLaws& laws = coupling_of(world, hand).laws;
     FeltStiffness stiffest;
     if (const ModelSpring* const spring = spring_of(world, hand)) {
         const double k = spring->k * units::newton_per_metre_per_kcal_per_mol_angstrom2;
-        const double A_d = gain_where(servo, world, Vec3::Zero(), k * Mat3::Identity());
-        return {force_gain(world.resource<Coupling>().laws.force, 0) * k / A_d,
-                grabbed_distance(world, hand)};
+        const double A_d = gain_where(servo, laws, Vec3::Zero(), k * Mat3::Identity());
+        return {force_gain(laws.force, 0) * k / A_d, grabbed_distance(world, hand)};
     }
     // False where the hand does not go: further in than its peak.
     const auto look_at = [&](double distance) {
@@ -149,9 +151,8 @@ FeltStiffness stiffest_place(const SceneDescription& scene, const World& world,
         if (F_m > peak_nN * 1e-9 && !pulls_outward) return false;
         const Mat3 stiffness = grip.projector * field.stiffness * grip.projector *
                                units::newton_per_metre_per_kcal_per_mol_angstrom2;
-        const double A_d = gain_where(servo, world, force, stiffness);
-        const double K =
-            largest_felt(world.resource<Coupling>().laws.force, force, stiffness) / A_d;
+        const double A_d = gain_where(servo, laws, force, stiffness);
+        const double K = largest_felt(laws.force, force, stiffness) / A_d;
         if (K > stiffest.newton_per_metre) stiffest = {K, distance};
         return true;
     };
@@ -171,17 +172,18 @@ FeltStiffness stiffest_place(const SceneDescription& scene, const World& world,
     return stiffest;
 }
 
-double calm_stiffness(const SceneDescription& scene, const std::optional<HandModel>& hand,
-                      double period_s) {
-    DeviceDynamics device{scene.device.inertia_kg, scene.device.viscosity_N_s_per_m};
-    if (scene.coupling.mode == CouplingMode::Guarded) {
-        device.viscosity_N_s_per_m +=
-            guarded_damping(scene.coupling.damping_N_s_per_m, device.inertia_kg,
-                            static_cast<int>(scene.device.servo_delay_ticks));
+double calm_stiffness(const SceneDescription& scene, std::size_t slot,
+                      const std::optional<HandModel>& hand, double period_s) {
+    const DeviceDescription& own = device_of(scene, slot);
+    const CouplingDescription& coupling = coupling_of(scene, slot);
+    DeviceDynamics device{own.inertia_kg, own.viscosity_N_s_per_m};
+    if (coupling.mode == CouplingMode::Guarded) {
+        device.viscosity_N_s_per_m += guarded_damping(coupling.damping_N_s_per_m, device.inertia_kg,
+                                                      static_cast<int>(own.servo_delay_ticks));
         period_s = servo_tick_s;
     }
     return critical_stiffness(build_plant(device, hand), period_s,
-                              static_cast<double>(scene.device.servo_delay_ticks) * servo_tick_s);
+                              static_cast<double>(own.servo_delay_ticks) * servo_tick_s);
 }
 
 namespace {
@@ -199,11 +201,11 @@ double encoder_jump(const GuardedSettings& guarded, double step_m) noexcept {
     return guarded.cap_N_per_m * step_m + guarded.damping_N_s_per_m * m_per_s;
 }
 
-void warn_of_resolution(const SceneDescription& scene, const World& world,
+void warn_of_resolution(const SceneDescription& scene, const World& world, std::size_t slot,
                         std::vector<std::string>& warnings) {
-    const ServoSettings servo = build_servo_settings(scene, world);
+    const ServoSettings servo = build_servo_settings(scene, world, slot);
     if (!servo.guarded) return;
-    const double step_mm = scene.device.encoder_step_mm;
+    const double step_mm = device_of(scene, slot).encoder_step_mm;
     const double jump = encoder_jump(*servo.guarded, 1e-3 * step_mm);
     if (jump > noticed_newton) {
         warnings.push_back(fmt::format(
@@ -221,7 +223,7 @@ void warn_of_resolution(const SceneDescription& scene, const World& world,
         warnings.push_back(fmt::format(
             "this force law makes rounding errors felt: at rest its gain is {:.2g} N/N, so forces "
             "of {:.2g} N are felt as {:.2g} N; expected a gain of at most {:.2g} N/N",
-            slope, finest_newton, std::min(slope * finest_newton, scene.coupling.clamp_N),
+            slope, finest_newton, std::min(slope * finest_newton, coupling_of(scene, slot).clamp_N),
             noticed_newton / finest_newton));
     }
 }
@@ -232,7 +234,7 @@ void warn_of_stiffness(const SceneDescription& scene, const World& world, const 
                        std::vector<std::string>& warnings) {
     const FeltStiffness stiffest = stiffest_place(scene, world, on_stage, slot);
     const std::optional<HandModel> hand = hand_model(list_hands(scene).at(slot).hand.grip);
-    const double limit = calm_stiffness(scene, hand, world.resource<Clock>().period_s);
+    const double limit = calm_stiffness(scene, slot, hand, world.resource<Clock>().period_s);
     if (stiffest.newton_per_metre > limit) {
         warnings.push_back(
             fmt::format("without friction this setting vibrates: at {:.2f} Å the hand feels {:.3g} "
@@ -242,7 +244,7 @@ void warn_of_stiffness(const SceneDescription& scene, const World& world, const 
     }
     if (script.release_s) {
         const double relaxed_limit =
-            calm_stiffness(scene, relaxed(hand), world.resource<Clock>().period_s);
+            calm_stiffness(scene, slot, relaxed(hand), world.resource<Clock>().period_s);
         if (stiffest.newton_per_metre > relaxed_limit && stiffest.newton_per_metre <= limit) {
             warnings.push_back(fmt::format(
                 "without friction this setting vibrates after the hand lets go: the relaxed hand "
@@ -256,11 +258,13 @@ void warn_of_stiffness(const SceneDescription& scene, const World& world, const 
 void warn_of_stroke(const SceneDescription& scene, const World& world, const HandScript& script,
                     std::size_t slot, std::vector<std::string>& warnings) {
     const HandTables tables = list_hands(scene).at(slot);
-    if (world.resource<Coupling>().is_guarded && tables.hand.peak_nN > scene.coupling.stop_nN) {
+    const double stop_nN = coupling_of(scene, slot).stop_nN;
+    const bool is_guarded = coupling_of(world, hand_at(world, slot)).is_guarded;
+    if (is_guarded && tables.hand.peak_nN > stop_nN) {
         warnings.push_back(
             fmt::format("the hand should reach {:.6g} nN ({}.peak_nN), but the molecule stops at "
                         "{:.6g} nN (coupling.stop_nN)",
-                        tables.hand.peak_nN, tables.hand_key, scene.coupling.stop_nN));
+                        tables.hand.peak_nN, tables.hand_key, stop_nN));
     }
     const double last_move = script.path.empty() ? 0 : script.path.back().time_s;
     if (last_move > scene.seconds) {
@@ -276,7 +280,7 @@ std::vector<std::string> list_warnings(const SceneDescription& scene, const Worl
                                        const HandScript& script, const StageFunction& on_stage) {
     std::vector<std::string> warnings = scene.notes;
     warn_of_stiffness(scene, world, script, 0, on_stage, warnings);
-    warn_of_resolution(scene, world, warnings);
+    warn_of_resolution(scene, world, 0, warnings);
     if (const auto closest = describe_coincident_atoms(world.resource<AtomTable>().names,
                                                        world.resource<AtomTable>().positions,
                                                        nearest_single_precision)) {
@@ -306,9 +310,11 @@ std::vector<std::string> list_hand_warnings(const SceneDescription& scene, const
                                             const StageFunction& on_stage) {
     std::vector<std::string> warnings;
     warn_of_stiffness(scene, world, script, slot, on_stage, warnings);
+    const HandDescription& hand = scene.hands.at(slot);
+    if (hand.device || hand.coupling) warn_of_resolution(scene, world, slot, warnings);
     warn_of_stroke(scene, world, script, slot, warnings);
     for (std::string& warning : warnings)
-        warning = fmt::format("{} hand: {}", slot == 1 ? "second" : "further", warning);
+        warning = fmt::format("{} hand: {}", edit_hand_names.at(slot), warning);
     return warnings;
 }
 
@@ -437,8 +443,11 @@ std::vector<std::string> list_neglected(const SceneDescription& scene, const Wor
 class RunLog {
 public:
     RunLog(const SceneDescription& scene, const World& world, std::span<const LockstepHand> hands)
-        : scene_(scene), accuracy_(scene, hands.front().servo) {
-        for (std::size_t i = 0; i < hands.size(); ++i) statistics_.emplace_back(servo_tick_s);
+        : scene_(scene) {
+        for (std::size_t i = 0; i < hands.size(); ++i) {
+            statistics_.emplace_back(servo_tick_s);
+            accuracy_.emplace_back(scene, i, hands[i].servo);
+        }
         // It goes by atoms' numbers, which edits change.
         if (has_mobile(world) && scene.edits.empty()) unbinding_.emplace(world);
     }
@@ -452,18 +461,23 @@ public:
         const Clock& clock = world.resource<Clock>();
         if (unbinding_) unbinding_->add(world, static_cast<double>(clock.steps) * clock.period_s);
         client_pulls_ += is_pulled_by_clients(world) ? 1 : 0;
-        if (!report.relaxed) {
-            accuracy_.add_answer(local_contact_of(world).model);
-            return;
+        const std::vector<Entity> hands = find_hands(world);
+        for (std::size_t i = 0; i < accuracy_.size(); ++i) {
+            if (report.relaxed)
+                accuracy_[i].add_step(*report.relaxed, find_error_estimate(world, hands[i]));
+            else
+                accuracy_[i].add_answer(contact_of(world, hands[i]).answer.model);
         }
-        accuracy_.add_step(*report.relaxed);
+        if (!report.relaxed) return;
         relaxation_.add(*report.relaxed, report.took_us);
         activity_.add(*report.relaxed, report.took_us, scene_.statics.budget_us);
     }
 
     void add_ticks(std::span<const ServoTick> ticks) {
-        for (std::size_t i = 0; i < ticks.size(); ++i) statistics_[i].add(ticks[i]);
-        accuracy_.add(ticks.front());
+        for (std::size_t i = 0; i < ticks.size(); ++i) {
+            statistics_[i].add(ticks[i]);
+            accuracy_[i].add(ticks[i]);
+        }
     }
 
     Summary summary(const World& world, std::span<const LockstepHand> hands) const {
@@ -473,8 +487,9 @@ public:
         for (std::size_t i = 1; i < hands.size(); ++i) {
             summary.other_hands.push_back(statistics_[i].summary());
             summary.other_hands.back().device = hands[i].device.spec().name;
+            summary.other_hands.back().accuracy = accuracy_[i].report(summary.step_median_us);
         }
-        summary.accuracy = accuracy_.report(summary.step_median_us);
+        summary.accuracy = accuracy_.front().report(summary.step_median_us);
         if (unbinding_) summary.unbinding = unbinding_->unbinding();
         summary.engine = report_engine(world);
         if (!has_mobile(world)) return summary;
@@ -493,9 +508,9 @@ public:
 private:
     const SceneDescription& scene_;
     std::vector<Statistics> statistics_;  // of each hand
+    std::vector<AccuracyLog> accuracy_;   // of each hand
     ActivityLog activity_;
     RelaxationLog relaxation_;
-    AccuracyLog accuracy_;
     std::optional<UnbindingLog> unbinding_;
     std::uint64_t client_pulls_ = 0;  // steps
 };
@@ -509,7 +524,7 @@ std::vector<LockstepHand> build_hands(const SceneDescription& scene, const World
     std::vector<LockstepHand> hands;
     for (std::size_t i = 0; i < devices.size(); ++i) {
         check_period(devices[i]->spec(), world.resource<Clock>().period_s);
-        hands.push_back({*devices[i], build_servo_settings(scene, world, devices[i]->spec()),
+        hands.push_back({*devices[i], build_servo_settings(scene, world, i, devices[i]->spec()),
                          contact_of(world, entities[i]).answer});
     }
     return hands;
@@ -519,9 +534,10 @@ std::vector<LockstepHand> build_hands(const SceneDescription& scene, const World
 
 void renew_servos(const SceneDescription& scene, const World& world,
                   std::span<LockstepHand> hands) {
-    for (LockstepHand& hand : hands) {
+    for (std::size_t slot = 0; slot < hands.size(); ++slot) {
+        LockstepHand& hand = hands[slot];
         const std::uint32_t revision = hand.servo.guarded ? hand.servo.guarded->revision : 0;
-        hand.servo = build_servo_settings(scene, world, hand.device.spec());
+        hand.servo = build_servo_settings(scene, world, slot, hand.device.spec());
         if (hand.servo.guarded) hand.servo.guarded->revision = revision + 1;
     }
 }

@@ -41,15 +41,17 @@ using BeforeStepFunction = std::function<void(World&, const EditFunction& edit)>
 // Number of servo ticks of the scene's run.
 std::uint64_t count_ticks(const SceneDescription& scene) noexcept;
 
-// The device of the scene's [device] table, as a device describes itself.
-DeviceSpec describe_emulated_device(const SceneDescription& scene);
+// The device that the scene gives to a hand, as a device describes itself. `slot`, here and below:
+// number of the hand, from 0.
+DeviceSpec describe_emulated_device(const SceneDescription& scene, std::size_t slot);
 
-// Servo settings for this device, or for the scene's own, with the world's coupling. A real device
+// Servo settings of a hand for this device, or for the scene's own. A real device
 // always has the whole safety chain, with the device's limits, and forces start after quiet cycles
 // with a ramp; an emulated one has the whole chain only with guarded coupling.
 ServoSettings build_servo_settings(const SceneDescription& scene, const World& world,
-                                   const DeviceSpec& device);
-ServoSettings build_servo_settings(const SceneDescription& scene, const World& world);
+                                   std::size_t slot, const DeviceSpec& device);
+ServoSettings build_servo_settings(const SceneDescription& scene, const World& world,
+                                   std::size_t slot);
 
 // Applies changes of the coupling by edits to the hands; their servos blend into the new values.
 void renew_servos(const SceneDescription& scene, const World& world, std::span<LockstepHand> hands);
@@ -58,12 +60,13 @@ void renew_servos(const SceneDescription& scene, const World& world, std::span<L
 // with motors and a period above `longest_real_period_s`.
 void check_period(const DeviceSpec& device, double period_s);
 
-// A_d of the scene's coupling (paper or guarded) for this force on the molecule (N) and stiffness
+// A_d of a hand's coupling (paper or guarded) for this force on the molecule (N) and stiffness
 // (N/m).
-double gain_where(const ServoSettings& servo, const World& world, const Vec3& force_newton,
+double gain_where(const ServoSettings& servo, const CouplingLaws& laws, const Vec3& force_newton,
                   const Mat3& stiffness) noexcept;
 // The same in one dimension.
-double gain_where(const ServoSettings& servo, const World& world, const LineForce& line) noexcept;
+double gain_where(const ServoSettings& servo, const CouplingLaws& laws,
+                  const LineForce& line) noexcept;
 
 // The place along the line where the hand feels the stiffest spring, K = A_f k_e / A_d, at up to
 // the scene's peak force. In space k_e is replaced by the largest eigenvalue of sym(J k_e), with J
@@ -72,16 +75,15 @@ struct FeltStiffness {
     double newton_per_metre = 0;
     double angstrom = 0;
 };
-// `on_stage` hears how far the search is, which takes minutes for a large rigid molecule. `slot`:
-// index of the hand from 0.
+// `on_stage` hears how far the search is, which takes minutes for a large rigid molecule.
 FeltStiffness stiffest_place(const SceneDescription& scene, const World& world,
                              const StageFunction& on_stage = {}, std::size_t slot = 0);
 
-// The stiffest spring (N/m) that is passive with this hand, the scene's device, this period and the
+// The stiffest spring (N/m) that is passive with this hand, its device, this period and the
 // scene's servo delay (haptics/plant.h); with guarded coupling at the period and damping of the
 // servo.
-double calm_stiffness(const SceneDescription& scene, const std::optional<HandModel>& hand,
-                      double period_s);
+double calm_stiffness(const SceneDescription& scene, std::size_t slot,
+                      const std::optional<HandModel>& hand, double period_s);
 
 // Warnings about the scene: a spring too stiff for this hand, device, period and servo delay
 // (haptics/plant.h); with guarded coupling a position sensor too coarse for stiffness and damping,

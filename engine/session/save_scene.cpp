@@ -199,7 +199,8 @@ std::string find_origin(const World& world, Entity hand, const SceneDescription&
 }
 
 void describe_hold(const World& world, Entity hand, const SceneDescription& scene,
-                   GrabDescription& grab, HandDescription& does) {
+                   HandDescription& does) {
+    GrabDescription& grab = does.grab;
     const Grip& grip = grip_of(world, hand);
     grab.molecule = world.find<Molecule>(grip.molecule)->name;
     grab.measured_from = find_origin(world, hand, scene);
@@ -222,7 +223,8 @@ void describe_hold(const World& world, Entity hand, const SceneDescription& scen
 }
 
 // Clears what says how a hand begins.
-void forget_start(GrabDescription& grab, HandDescription& does) {
+void forget_start(HandDescription& does) {
+    GrabDescription& grab = does.grab;
     if (does.stroke == Stroke::InOut) does.stroke = Stroke::Hold;
     does.start_offset_angstrom = {};
     does.start_angstrom.reset();
@@ -235,13 +237,12 @@ void forget_start(GrabDescription& grab, HandDescription& does) {
 void describe_hands(const World& world, SceneDescription& scene) {
     const std::vector<Entity> hands = find_hands(world);
     for (std::size_t slot = 0; slot < hands.size(); ++slot) {
-        GrabDescription& grab = slot == 0 ? scene.grab : scene.second->grab;
-        HandDescription& does = slot == 0 ? scene.hand : scene.second->hand;
-        forget_start(grab, does);
+        HandDescription& hand = scene.hands.at(slot);
+        forget_start(hand);
         if (world.find<Grip>(hands[slot])) {
-            describe_hold(world, hands[slot], scene, grab, does);
-        } else if (!is_fixed(scene, grab.measured_from)) {
-            grab.measured_from.clear();
+            describe_hold(world, hands[slot], scene, hand);
+        } else if (!is_fixed(scene, hand.grab.measured_from)) {
+            hand.grab.measured_from.clear();
         }
     }
 }
@@ -344,7 +345,7 @@ SavedScene describe_world(const World& world, const fs::path& file) {
     scene.joints = mechanics.joints;
     scene.statics = mechanics.statics;
     scene.statics.relaxes_start = false;
-    scene.coupling = world.resource<Coupling>().description;
+    keep_couplings(world, scene);
     scene.period_ms = std::round(world.resource<Clock>().period_s * 1e3);
     keep_coming_edits(world, scene);
 
@@ -355,7 +356,7 @@ SavedScene describe_world(const World& world, const fs::path& file) {
     describe_hands(world, scene);
     describe_springs_and_marks(world, scene);
     std::string& around = scene.joints.around;
-    if (molecule_called(world, around) == Entity{}) around = scene.grab.molecule;
+    if (molecule_called(world, around) == Entity{}) around = scene.hands.front().grab.molecule;
     scene.file = file;
     scene.places.clear();
     return {std::move(scene), writer.files()};

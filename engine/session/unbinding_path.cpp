@@ -28,7 +28,7 @@ std::vector<std::size_t> find_heavy(const World& world, Entity hand) {
 }
 
 Vec3 centre_of_held(const World& world) {
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     if (const ModelSpring* const spring = spring_of(world, hand))
         return find_centre_of_mass(model_of(world), spring->atoms,
                                    world.resource<TorsionState>().positions);
@@ -39,13 +39,13 @@ Vec3 centre_of_held(const World& world) {
 
 bool UnbindingLog::suits(const World& world) const {
     return world.resource<AtomTable>().size() == start_.size() &&
-           find_heavy(world, first_hand(world)) == heavy_;
+           find_heavy(world, hand_at(world, 0)) == heavy_;
 }
 
 UnbindingLog::UnbindingLog(const World& start, double time_s)
     : comparison_(start), start_(start.resource<AtomTable>().positions) {
     const AtomTable& atoms = start.resource<AtomTable>();
-    const Entity hand = first_hand(start);
+    const Entity hand = hand_at(start, 0);
     heavy_ = find_heavy(start, hand);
     const AtomRange grabbed = held_range(start, hand);
     for (std::size_t i = 0; i < atoms.size(); ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 #include "ecs/entity.h"
 #include "haptics/exchange.h"
+#include "haptics/gains.h"
 #include "math/vec.h"
 #include "molecule/atoms.h"
 #include "scene/description.h"
@@ -89,6 +90,15 @@ struct Grip {
 
     std::int32_t base = -1;  // index of the molecule in the torsion model; -1: none
     bool is_new = true;      // its pose is not set yet; it will be that of the held molecule
+};
+
+// The coupling between the hand and what it holds.
+struct Coupling {
+    CouplingLaws laws;
+    bool is_guarded = false;               // the servo moves the molecule
+    std::size_t pairs_per_tick = 130'000;  // pairs that a servo tick has time for
+    CouplingDescription description;       // the scene's, as edits have changed it
+    bool is_own = false;                   // the scene gives this hand a coupling of its own
 };
 
 // Indices of atoms around the held molecule; ascending, but with smooth ends in the order of the

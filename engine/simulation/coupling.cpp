@@ -1,5 +1,7 @@
 #include "simulation/coupling.h"
 
+#include "core/load_error.h"
+#include "scene/read_scene.h"
 #include "simulation/held.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
@@ -7,6 +9,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace palpa {
 namespace {
@@ -87,14 +92,15 @@ CouplingLaws build_coupling_laws(const CouplingDescription& c) {
     return {ConstantForceLaw{0}, constant_displacement};
 }
 
-Coupling build_coupling(const CouplingDescription& coupling) {
+Coupling build_coupling(const CouplingDescription& coupling, bool is_own) {
     return {build_coupling_laws(coupling), coupling.mode == CouplingMode::Guarded,
-            static_cast<std::size_t>(coupling.pairs_per_tick), coupling};
+            static_cast<std::size_t>(coupling.pairs_per_tick), coupling, is_own};
 }
 
-void set_coupling(const CouplingDescription& coupling, World& world) {
-    world.set_resource(build_coupling(coupling));
-    if (coupling.feel_within_pN) set_tolerance(world, *coupling.feel_within_pN);
+namespace {
+
+void renew_contacts(World& world) {
+    if (const auto within_pN = find_tolerance(world)) set_tolerance(world, *within_pN);
     for (const Entity hand : find_hands(world)) {
         if (!world.find<Grip>(hand)) continue;  // it feels nothing in any mode
         update_near(world, hand);
@@ -103,6 +109,49 @@ void set_coupling(const CouplingDescription& coupling, World& world) {
         contact = build_local_contact(world, hand, {});
         contact.model.start = start;
     }
+}
+
+}  // namespace
+
+void set_couplings(const SceneDescription& scene, World& world) {
+    std::size_t slot = 0;
+    for (const Entity hand : find_hands(world)) {
+        const bool is_own = scene.hands.at(slot).coupling.has_value();
+        world.set(hand, build_coupling(coupling_of(scene, slot++), is_own));
+    }
+    renew_contacts(world);
+}
+
+void change_coupling(const std::vector<std::string>& settings, Entity hand, World& world) {
+    const Coupling& before = coupling_of(world, hand);
+    const CouplingDescription changed = with_settings(before.description, settings);
+    if (!can_build_laws(changed)) {
+        throw LoadError(
+            {},
+            "eq. 2 with these F_h1_N, F_h2_N and F_0_nN cannot have the slopes A_f_max at 0 "
+            "and A_f_min at F_0; expected other values, or force_law = \"printed\"");
+    }
+    const bool is_own = before.is_own;
+    for (const Entity other : find_hands(world)) {
+        if (other == hand || !(is_own || coupling_of(world, other).is_own))
+            world.set(other, build_coupling(changed, is_own));
+    }
+    renew_contacts(world);
+}
+
+void keep_couplings(const World& world, SceneDescription& scene) {
+    std::size_t slot = 0;
+    for (const Entity hand : find_hands(world))
+        coupling_of(scene, slot++) = coupling_of(world, hand).description;
+}
+
+std::optional<double> find_tolerance(const World& world) {
+    std::optional<double> smallest;
+    world.each<Coupling>([&](Entity, const Coupling& coupling) {
+        const std::optional<double>& within_pN = coupling.description.feel_within_pN;
+        if (within_pN && !(smallest && *smallest <= *within_pN)) smallest = within_pN;
+    });
+    return smallest;
 }
 
 }  // namespace palpa

@@ -39,12 +39,13 @@ std::vector<Entity> find_hands(const World& world) {
     return hands;
 }
 
-Entity first_hand(const World& world) {
-    Entity first;
+Entity hand_at(const World& world, std::size_t number) {
+    Entity found;
+    std::size_t i = 0;
     world.each<Hand>([&](Entity hand, const Hand&) {
-        if (first == Entity{}) first = hand;
+        if (i++ == number) found = hand;
     });
-    return first;
+    return found;
 }
 
 const Grip& grip_of(const World& world, Entity hand) noexcept {
@@ -59,8 +60,14 @@ const Contact& contact_of(const World& world, Entity hand) noexcept {
     return *contact;
 }
 
-const LocalContactModel& local_contact_of(const World& world) noexcept {
-    return contact_of(world, first_hand(world)).answer;
+const LocalContactModel& contact_at(const World& world, std::size_t number) {
+    return contact_of(world, hand_at(world, number)).answer;
+}
+
+const Coupling& coupling_of(const World& world, Entity hand) noexcept {
+    const Coupling* const coupling = world.find<Coupling>(hand);
+    PALPA_ASSERT(coupling);
+    return *coupling;
 }
 
 AtomRange held_range(const World& world, Entity hand) noexcept {

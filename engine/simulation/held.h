@@ -6,6 +6,7 @@
 #include "simulation/resources.h"
 #include "statics/torsion_state.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -15,14 +16,15 @@ namespace palpa {
 
 // Hands in the order of their devices.
 std::vector<Entity> find_hands(const World& world);
-// The world must have a hand.
-Entity first_hand(const World& world);
+// The hand of this number, from 0; none where the world has fewer.
+Entity hand_at(const World& world, std::size_t number);
 
 // The grip of a hand that holds something.
 const Grip& grip_of(const World& world, Entity hand) noexcept;
 const Contact& contact_of(const World& world, Entity hand) noexcept;
-// That of the first hand.
-const LocalContactModel& local_contact_of(const World& world) noexcept;
+// The last contact model of the hand of this number.
+const LocalContactModel& contact_at(const World& world, std::size_t number);
+const Coupling& coupling_of(const World& world, Entity hand) noexcept;
 
 // True if the hand holds a part of the mechanics, false for a rigid molecule outside of them.
 bool is_mobile(const World& world, Entity hand) noexcept;

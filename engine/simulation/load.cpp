@@ -251,9 +251,13 @@ Grip build_grip(const SceneDescription& scene, const HandTables& tables, bool is
 
 // They take hold in the order of their devices.
 void add_hands(const SceneDescription& scene, World& world) {
+    std::size_t slot = 0;
     for (const HandTables& tables : list_hands(scene)) {
+        const Coupling coupling =
+            build_coupling(coupling_of(scene, slot++), tables.hand.coupling.has_value());
         if (tables.grab.molecule.empty()) {
             const Entity hand = world.create();
+            world.set(hand, coupling);
             world.set(hand, Hand{.turns = !scene.has_statics()});
             world.set(hand, Contact{build_still_contact(world), {}});
             continue;
@@ -267,12 +271,13 @@ void add_hands(const SceneDescription& scene, World& world) {
             (is_whole ? other : grip).before = (is_whole ? grip : other).before;
             if (!holds_whole(world, holder) || !is_whole) return;
             throw LoadError(scene.place_of(tables.grab_key + ".molecule"),
-                            fmt::format("both hands hold '{0}' as a whole; expected another "
+                            fmt::format("two hands hold '{0}' as a whole; expected another "
                                         "molecule, or one of them to hold an atom or a residue of "
                                         "it by a spring ({1}.atom)",
                                         tables.grab.molecule, tables.grab_key));
         });
         const Entity hand = world.create();
+        world.set(hand, coupling);
         world.set(hand, Hand{.turns = grip.freedom == 6});
         world.set(hand, grip);
         if (!is_whole)
@@ -302,9 +307,12 @@ void set_settings(const SceneDescription& scene, std::shared_ptr<const ForceFiel
         if (molecule.structural_water) in_use.structural_waters.push_back(molecule.name);
     world.set_resource(std::move(in_use));
     MechanicsSettings mechanics{scene.joints, scene.statics};
-    if (mechanics.joints.around.empty()) mechanics.joints.around = scene.grab.molecule;
+    if (mechanics.joints.around.empty())
+        mechanics.joints.around = scene.hands.front().grab.molecule;
     world.set_resource(std::move(mechanics));
-    GrabSettings grab{scene.grab.measured_from, scene.grab.spring_kcal_per_mol_angstrom2, {}};
+    GrabSettings grab{scene.hands.front().grab.measured_from,
+                      scene.hands.front().grab.spring_kcal_per_mol_angstrom2,
+                      {}};
     for (const HandTables& tables : list_hands(scene))
         grab.start_offsets.emplace_back(tables.hand.start_offset_angstrom.data());
     world.set_resource(std::move(grab));
@@ -339,9 +347,16 @@ World read_world(const SceneDescription& scene, const StageFunction& on_stage) {
 }
 
 void check_laws(const SceneDescription& scene) {
-    if (can_build_laws(scene.coupling)) return;
+    std::string key = "coupling.force_law";
+    bool can = can_build_laws(scene.coupling);
+    for (const HandTables& tables : list_hands(scene)) {
+        if (!can || !tables.hand.coupling || can_build_laws(*tables.hand.coupling)) continue;
+        can = false;
+        key = tables.hand_key + "." + key;
+    }
+    if (can) return;
     throw LoadError(
-        scene.place_of("coupling.force_law"),
+        scene.place_of(key),
         "eq. 2 with these F_h1_N, F_h2_N and F_0_nN cannot have the slopes A_f_max at 0 and "
         "A_f_min at F_0; expected other values, or coupling.force_law = \"printed\"");
 }
@@ -351,7 +366,6 @@ void check_laws(const SceneDescription& scene) {
 World load_world(const SceneDescription& scene, const StageFunction& on_stage) {
     check_laws(scene);
     World world = read_world(scene, on_stage);
-    world.set_resource(build_coupling(scene.coupling));
     add_hands(scene, world);
     if (scene.engine) {
         set_remote_engine(scene, world);
@@ -370,7 +384,7 @@ World load_world(const SceneDescription& scene, const StageFunction& on_stage) {
     std::vector<Entity> molecules;
     world.each<Molecule>([&](Entity molecule, const Molecule&) { molecules.push_back(molecule); });
     for (const Entity molecule : molecules) set_start_places(world, molecule);
-    set_coupling(scene.coupling, world);
+    set_couplings(scene, world);
     (void)find_empty_selections(scene.view, world);  // throws for those that are none
     return world;
 }

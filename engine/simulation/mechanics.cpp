@@ -148,6 +148,7 @@ World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
     World world;
     const Entity hand = world.create();
     world.set(hand, Hand{});
+    world.set(hand, build_coupling(scene.coupling, false));
     const Entity all = world.create();
     world.set(all, Molecule{"", {0, static_cast<std::uint32_t>(model.reference.size())}});
     Grip grip;
@@ -162,7 +163,6 @@ World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
     world.set_resource(ScenePlaces{scene.file, scene.places});
     world.set_resource(ForceFieldInUse{scene.force_field, nullptr, {}});
     world.set_resource(MechanicsSettings{{}, scene.statics});
-    world.set_resource(build_coupling(scene.coupling));
     StartReport report;
     report.joints = model.tree.bodies.joints();
     world.set_resource(report);
@@ -171,16 +171,16 @@ World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
 }
 
 void move_held(World& world, const Vec3& by) {
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     MoleculePose pose = grip_of(world, hand).pose;
     pose.place_angstrom = held_place(world, hand) + by - grip_of(world, hand).anchor;
     place_held(world, hand, pose);
 }
 
 HeldPart held_part(const World& world) {
-    const Grip& grip = grip_of(world, first_hand(world));
+    const Grip& grip = grip_of(world, hand_at(world, 0));
     HeldPart held{static_cast<std::uint32_t>(grip.base), {}};
-    if (const ModelSpring* const spring = spring_of(world, first_hand(world)))
+    if (const ModelSpring* const spring = spring_of(world, hand_at(world, 0)))
         held.spring = *spring;
     return held;
 }

@@ -2,6 +2,7 @@
 
 #include "core/interrupt.h"
 #include "core/units.h"
+#include "simulation/coupling.h"
 #include "simulation/held.h"
 #include "simulation/second_order.h"
 
@@ -194,7 +195,7 @@ PaperStep build_paper_step(const QuasiStaticSettings& settings, const TorsionMod
     }
     paper.choose_every = paper.settings.choose_every;
     if (s.budget_us) paper.budget.emplace(*s.budget_us);
-    if (const auto within_pN = world.resource<Coupling>().description.feel_within_pN) {
+    if (const auto within_pN = find_tolerance(world)) {
         paper.accuracy.emplace(
             *within_pN, WorkBudget{paper.settings.limits.degrees_of_freedom, paper.steps},
             static_cast<std::size_t>(model.coordinates), paper.budget.has_value());
@@ -287,19 +288,22 @@ Vec6 find_pull(const World& world, const PaperStep& paper, Entity hand) noexcept
 }
 
 void before_step(World& world, PaperStep& paper, const StepInput& input) {
-    paper.rendered.reset();
-    if (!paper.accuracy || !input.hands.front().molecule) return;
-    if (!world.find<Grip>(first_hand(world))) return;
+    paper.rendered.fill({});
+    if (!paper.accuracy) return;
     std::vector<std::optional<LiveMolecule>> live;
     for (const HandPose& hand : input.hands) {
         live.emplace_back();
         if (hand.molecule) live.back() = {*hand.molecule, hand.start};
     }
-    const LocalContactModel& contact = local_contact_of(world);
-    paper.rendered =
-        evaluate_local(contact.model, contact.field, *input.hands.front().molecule, live)
-            .force_newton /
-        units::newton_per_kcal_per_mol_angstrom;
+    const std::vector<Entity> hands = find_hands(world);
+    for (std::size_t slot = 0; slot < input.hands.size(); ++slot) {
+        const std::optional<MoleculePose>& molecule = input.hands[slot].molecule;
+        if (!molecule || !world.find<Grip>(hands[slot])) continue;
+        const LocalContactModel& contact = contact_of(world, hands[slot]).answer;
+        paper.rendered[slot] =
+            evaluate_local(contact.model, contact.field, *molecule, live).force_newton /
+            units::newton_per_kcal_per_mol_angstrom;
+    }
 }
 
 void after_step(World& world, PaperStep& paper) {
@@ -311,19 +315,22 @@ void after_step(World& world, PaperStep& paper) {
     ErrorEstimate& estimate = *paper.estimate;
     ++estimate.steps;
     if (accuracy ? !accuracy->is_due() : estimate.steps % every != 0) return;
-    estimate.last_pN.reset();
     find_error(world, paper);
     report->is_estimating = true;
-    report->estimated_error_pN = estimate.last_pN;
-    if (accuracy && estimate.last_pN)
-        accuracy->add_estimate(*estimate.last_pN, estimate.felt_pN, estimate.evaluations);
+    report->estimated_error_pN = *std::ranges::max_element(estimate.last_pN);
+    if (accuracy && report->estimated_error_pN)
+        accuracy->add_estimate(*report->estimated_error_pN, estimate.felt_pN, estimate.evaluations);
 }
 
 void find_error(World& world, PaperStep& paper) {
-    const Entity hand = first_hand(world);
-    const Grip* const grip = world.find<Grip>(hand);
-    if (!paper.estimate || !grip || !is_mobile(world, hand)) return;
+    if (!paper.estimate) return;
     ErrorEstimate& estimate = *paper.estimate;
+    estimate.last_pN.fill({});
+    const std::vector<Entity> hands = find_hands(world);
+    const auto feels = [&](Entity hand) {
+        return world.find<Grip>(hand) && is_mobile(world, hand);
+    };
+    if (std::ranges::none_of(hands, feels)) return;
     const TorsionModel& model = model_of(world);
     if (!estimate.memory) {
         estimate.memory = {build_lineariser(model, estimate.held), build_quasi_statics(model),
@@ -333,11 +340,16 @@ void find_error(World& world, PaperStep& paper) {
         make_renewal(model, estimate.settings,
                      {world.resource<TorsionState>(), 0, 0, {}, {}, {}, {}}, *estimate.memory);
     if (!rest.linear) return;
-    const Vec3 felt = paper.rendered ? *paper.rendered : find_force(world, paper, hand);
-    const Vec3 found = find_force_on_held(model, rest.linear->at, held_in_state(world, hand));
     constexpr double pN = units::piconewton_per_kcal_per_mol_angstrom;
-    estimate.last_pN = pN * (felt - found).norm();
-    estimate.felt_pN = pN * felt;
+    for (std::size_t i = 0; i < hands.size(); ++i) {
+        if (!feels(hands[i])) continue;
+        const Vec3 felt =
+            paper.rendered[i] ? *paper.rendered[i] : find_force(world, paper, hands[i]);
+        const Vec3 found =
+            find_force_on_held(model, rest.linear->at, held_in_state(world, hands[i]));
+        estimate.last_pN[i] = pN * (felt - found).norm();
+        estimate.felt_pN[i] = pN * felt;
+    }
     // Second derivatives cost about as much as so many evaluations.
     constexpr std::size_t linearisation = 10;
     estimate.evaluations = rest.relaxed.evaluations + linearisation;

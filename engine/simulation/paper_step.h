@@ -1,6 +1,7 @@
 // The paper's step in a world: a few joints and bases are active at a time, chosen now and then
 // from all of them (statics/adaptive_step.h). Used through simulation/solver.h.
 #pragma once
+#include "core/hands.h"
 #include "ecs/world.h"
 #include "simulation/plan_mechanics.h"
 #include "simulation/resources.h"
@@ -11,6 +12,7 @@
 #include "statics/renewal.h"
 #include "statics/time_budget.h"
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -23,16 +25,17 @@ struct Ball {
     double radius;
 };
 
-// The difference between the force on the first hand and that of complete relaxation, with all
-// joints and pairs, to an rms force of 0.1 kcal/mol per rad and Å; estimated on a copy now and
-// then, or, if an accuracy is set, as often as its share of the work allows.
+// The difference between the force on each hand and that of complete relaxation, with all joints
+// and pairs, to an rms force of 0.1 kcal/mol per rad and Å; estimated on a copy now and then, or,
+// if an accuracy is set, as often as its share of the work allows.
 struct ErrorEstimate {
     SecondOrderSettings settings;
     HeldParts held;
     std::optional<RenewalMemory> memory;  // set by the first estimate
     std::size_t steps = 0;                // step of the simulation
-    std::optional<double> last_pN;
-    Vec3 felt_pN = Vec3::Zero();  // force at that time
+    // Errors found last, and forces at that time, by the number of the hand.
+    std::array<std::optional<double>, most_hands> last_pN;
+    std::array<Vec3, most_hands> felt_pN{};
     std::size_t evaluations = 0;  // number of evaluations used
 
     ErrorEstimate without_caches() const;
@@ -46,9 +49,9 @@ struct PaperPlan {
     std::optional<TimeBudget> budget;
     // If the scene sets an accuracy: the controller of the work.
     std::optional<AccuracyController> accuracy;
-    // Before a step: the force rendered to the first hand at its present pose, kcal/mol/Å; nothing:
-    // use the step's own result.
-    std::optional<Vec3> rendered;
+    // Before a step: the force rendered to each hand at its present pose, kcal/mol/Å; nothing: use
+    // the step's own result.
+    std::array<std::optional<Vec3>, most_hands> rendered;
     // Weight of each joint by what it moves; empty: all equal. Then whether parts near hands have
     // more weight, and the regions found last.
     std::vector<double> mobility_weights;
@@ -82,12 +85,12 @@ RelaxStepReport relax(World& world, PaperStep& paper, const StepInput& input);
 Vec3 find_force(const World& world, const PaperStep& paper, Entity hand) noexcept;
 Vec6 find_pull(const World& world, const PaperStep& paper, Entity hand) noexcept;
 
-// Records the force that the servo rendered at the first hand's present pose, in the field of the
+// Records the forces that the servos rendered at the hands' present poses, in the fields of the
 // previous step, if an accuracy is set.
 void before_step(World& world, PaperStep& paper, const StepInput& input);
 // Estimates the error if it is due.
 void after_step(World& world, PaperStep& paper);
-// Makes one such estimate at once.
+// Makes such an estimate for all hands at once.
 void find_error(World& world, PaperStep& paper);
 // Adds the time of the step to the budget.
 void note_time(const StepReport& report, PaperStep& paper);

@@ -107,8 +107,8 @@ std::vector<HeldPart> find_held(const World& world, const MechanicsPlan& plan) {
     };
     const ScenePlaces& places = world.resource<ScenePlaces>();
     std::vector<HeldPart> held;
+    const std::vector<Entity> hands = find_hands(world);
     world.each<Grip>([&](Entity hand, const Grip& grip) {
-        const bool is_first = hand == first_hand(world);
         const Molecule& molecule = *world.find<Molecule>(grip.molecule);
         HeldPart& part = held.emplace_back();
         if (const Spring* const spring = world.find<Spring>(hand)) {
@@ -116,8 +116,11 @@ std::vector<HeldPart> find_held(const World& world, const MechanicsPlan& plan) {
             part.spring = find_model_spring(world, plan.atoms, *spring);
         } else {
             part.base = piece_of(molecule.reference_atom);
-            check_one_piece(places.place_of(is_first ? "grab.molecule" : "second.grab.molecule"),
-                            molecule, piece_of);
+            const auto number = std::ranges::find(hands, hand) - hands.begin() + 1;
+            check_one_piece(
+                places.place_of(hands.size() == 1 ? "grab.molecule"
+                                                  : fmt::format("hand[{}].grab.molecule", number)),
+                molecule, piece_of);
         }
     });
     return held;

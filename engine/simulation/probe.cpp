@@ -13,7 +13,7 @@ namespace {
 
 // The first, where none is named.
 Entity named(const World& world, Entity hand) noexcept {
-    return hand == Entity{} ? first_hand(world) : hand;
+    return hand == Entity{} ? hand_at(world, 0) : hand;
 }
 
 const Grip& named_grip(const World& world, Entity hand) noexcept {

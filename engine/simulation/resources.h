@@ -89,14 +89,6 @@ struct Interactions {
     PairPrecision precision = PairPrecision::Fast;  // precision of steps, see fast_field_on_held
 };
 
-// The coupling between hands and molecules.
-struct Coupling {
-    CouplingLaws laws;
-    bool is_guarded = false;               // the servo moves the molecule
-    std::size_t pairs_per_tick = 130'000;  // pairs that a servo tick has time for
-    CouplingDescription description;       // the scene's, as edits have changed it
-};
-
 struct Clock {
     double period_s = 0;  // declared period of a step
     std::uint64_t steps = 0;
@@ -153,8 +145,8 @@ struct [[nodiscard]] RelaxStepReport {
     std::size_t evaluations = 0;
     std::size_t active = 0;  // active degrees of freedom
     std::size_t steps = 0;   // relaxation steps
-    // Error of the force on the hand against that with all joints (pN), if an error estimate ended
-    // in this step.
+    // The largest error of the force on a hand against that with all joints (pN), if an error
+    // estimate ended in this step.
     std::optional<double> estimated_error_pN;
     bool is_estimating = false;
     // The metric of all degrees of freedom at the last selection and of those not selected:

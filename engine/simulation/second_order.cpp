@@ -1,6 +1,7 @@
 #include "simulation/second_order.h"
 
 #include "core/units.h"
+#include "simulation/coupling.h"
 #include "simulation/held.h"
 #include "simulation/systems/gather_springs.h"
 
@@ -133,7 +134,7 @@ SecondOrder build_second_order(const QuasiStaticSettings& settings, const World&
     second.settings.near_reach = s.near_angstrom;
     second.settings.renew_hand = s.renew_angstrom;
     if (s.responses > 0) second.settings.responses = static_cast<std::size_t>(s.responses);
-    if (const auto within_pN = world.resource<Coupling>().description.feel_within_pN)
+    if (const auto within_pN = find_tolerance(world))
         second.settings.tolerance = *within_pN / units::piconewton_per_kcal_per_mol_angstrom;
     second.most_evaluations = second.settings.evaluations;
     if (!s.renews_beside) second.delay_s = 1e-3 * s.renewal_ms;

@@ -268,9 +268,13 @@ double find_energy(const World& world) noexcept {
     return energy - find_client_energy(world);
 }
 
-std::optional<double> find_error_estimate(const World& world) noexcept {
+std::optional<double> find_error_estimate(const World& world, Entity hand) {
     const PaperStep* const paper = find_solver<PaperStep>(world);
-    if (paper && paper->estimate) return paper->estimate->last_pN;
+    if (paper && paper->estimate) {
+        const std::vector<Entity> hands = find_hands(world);
+        const auto slot = static_cast<std::size_t>(std::ranges::find(hands, hand) - hands.begin());
+        return paper->estimate->last_pN.at(slot);
+    }
     const std::optional<RelaxStepReport>& relaxed = world.resource<StepReport>().relaxed;
     return relaxed ? relaxed->estimated_error_pN : std::nullopt;
 }

@@ -45,15 +45,18 @@ bool AccuracyController::is_due() const noexcept {
     return saved_ >= 0 && since_estimate_ >= rareness_ * estimate_work_;
 }
 
-void AccuracyController::add_estimate(double error_pN, const Vec3& rendered_pN, std::size_t steps) {
+void AccuracyController::add_estimate(double error_pN, std::span<const Vec3> rendered_pN,
+                                      std::size_t steps) {
     // No number is as wrong as can be.
     if (std::isnan(error_pN)) error_pN = std::numeric_limits<double>::infinity();
     estimate_work_ = static_cast<double>(steps + 1);  // one sum more than steps
     saved_ -= estimate_work_;
     since_estimate_ = 0;
     last_error_pN_ = error_pN;
-    if (estimates_ == 0) rendered_pN_ = rendered_pN;
-    largest_change_pN_ = std::max(largest_change_pN_, (rendered_pN - rendered_pN_).norm());
+    if (estimates_ == 0) rendered_pN_.assign(rendered_pN.begin(), rendered_pN.end());
+    for (std::size_t i = 0; i < rendered_pN_.size() && i < rendered_pN.size(); ++i)
+        largest_change_pN_ =
+            std::max(largest_change_pN_, (rendered_pN[i] - rendered_pN_[i]).norm());
     if (errors_pN_.size() < remembered) {
         errors_pN_.push_back(error_pN);
     } else {

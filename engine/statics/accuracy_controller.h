@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace palpa {
@@ -39,14 +40,14 @@ public:
     void add_step(const WorkBudget& used) noexcept;
     // True if the next error estimate is due, that is, if its work is within the allowed share.
     bool is_due() const noexcept;
-    // Adjusts the work budget to an error estimate, found after `steps` steps with this rendered
-    // force. The measure is the error that nine of the last ten estimates with this budget do not
-    // exceed. Above 0.7 of the tolerance (the servo's prediction between steps adds to the error)
-    // the number of active joints rises by half up to all, then the number of steps; once more for
-    // every doubling of the error. Below half of that, first steps and then joints fall by a fifth,
-    // but only after a change of force that could have caused an error. Without changes estimates
-    // become rarer until one is too large.
-    void add_estimate(double error_pN, const Vec3& rendered_pN, std::size_t steps);
+    // Adjusts the work budget to an error estimate, found after `steps` steps with these rendered
+    // forces, one per hand. The measure is the error that nine of the last ten estimates with this
+    // budget do not exceed. Above 0.7 of the tolerance (the servo's prediction between steps adds
+    // to the error) the number of active joints rises by half up to all, then the number of steps;
+    // once more for every doubling of the error. Below half of that, first steps and then joints
+    // fall by a fifth, but only after a change of force that could have caused an error. Without
+    // changes estimates become rarer until one is too large.
+    void add_estimate(double error_pN, std::span<const Vec3> rendered_pN, std::size_t steps);
 
     void set_tolerance(double tolerance_pN) noexcept { tolerance_pN_ = tolerance_pN; }
     double tolerance() const noexcept { return tolerance_pN_; }
@@ -70,10 +71,10 @@ private:
         errors_pN_;              // ring buffer of the last error estimates with this work budget
     std::size_t estimates_ = 0;  // number of estimates with this work budget
     double last_error_pN_ = 0;
-    Vec3 rendered_pN_ = Vec3::Zero();  // rendered force at the first estimate with this work budget
-    double largest_change_pN_ = 0;     // largest change of the rendered force since then
-    double saved_ = 0;                 // work available for error estimates
-    double since_estimate_ = 0;        // part of it gained since the last estimate
+    std::vector<Vec3> rendered_pN_;  // forces at the first estimate with this work budget
+    double largest_change_pN_ = 0;   // largest change of one of them since then
+    double saved_ = 0;               // work available for error estimates
+    double since_estimate_ = 0;      // part of it gained since the last estimate
     double estimate_work_ = 20;
     double rareness_ = 1;
 };

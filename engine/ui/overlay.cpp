@@ -82,7 +82,7 @@ double felt_stiffness(const CouplingLaws& laws, const ContactModel& contact) {
 
 Overlay::Overlay(const SceneDescription& scene)
     : scene_(scene),
-      settings_{scene.coupling, scene.period_ms},
+      settings_{coupling_of(scene, 0), scene.period_ms},
       additions_(additions_of(scene.view)),
       has_flexible_(std::any_of(
           scene.molecules.begin(), scene.molecules.end(),
@@ -92,9 +92,10 @@ Overlay::Overlay(const SceneDescription& scene)
 }
 
 void Overlay::update_limit() {
-    stiffness_limit_ = is_guarded() ? device_cap_N_per_m_
-                                    : calm_stiffness(scene_, hand_model(scene_.hand.grip),
-                                                     settings_.period_ms * 1e-3);
+    stiffness_limit_ = is_guarded()
+                           ? device_cap_N_per_m_
+                           : calm_stiffness(scene_, 0, hand_model(scene_.hands.front().grip),
+                                            settings_.period_ms * 1e-3);
 }
 
 void Overlay::add_tick(const ServoTick& tick) {
@@ -300,7 +301,8 @@ void Overlay::restart_lesson(const Readout& readout, std::vector<Command>& comma
                              std::vector<Action>& actions) {
     lesson_.restart();
     lesson_curve_.clear();
-    if (settings_.coupling.mode != scene_.coupling.mode) set_mode(scene_.coupling.mode, commands);
+    const CouplingMode mode = coupling_of(scene_, 0).mode;
+    if (settings_.coupling.mode != mode) set_mode(mode, commands);
     actions.push_back(Action::Reset);
     awaited_reset_ = readout.resets + 1;
     saw_reset_ = false;

@@ -230,7 +230,7 @@ void Overlay::choose_touch() {
         tip(translated(touch.explanation));
     }
     same_line_if_it_fits(translated("as the scene"));
-    if (ImGui::SmallButton(labelled("as the scene").c_str())) set(scene_.coupling.feel_pN);
+    if (ImGui::SmallButton(labelled("as the scene").c_str())) set(coupling_of(scene_, 0).feel_pN);
     tip(translated("the force range of the scene file, or its force law if it has no range"));
     if (!c.feel_pN) return;
     double weakest = (*c.feel_pN)[0];

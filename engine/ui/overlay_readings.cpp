@@ -280,7 +280,7 @@ void Overlay::draw_forces(const ContactModel& contact) const {
                            "moves, so they are not at rest: the force can be several times the "
                            "force of relaxed surroundings (measured in scenes/hiv/results.md)."));
     }
-    if (!on_axis && scene_.grab.atom.empty()) {  // a spring turns nothing
+    if (!on_axis && scene_.hands.front().grab.atom.empty()) {  // a spring turns nothing
         reading(translated("torque"),
                 fmt::format("{:.3g} nN Å", 1e19 * contact.torque_newton_metre.norm()),
                 translated("Torque on the molecule in hand about its centre of mass. The device "
@@ -335,7 +335,8 @@ void Overlay::draw_machine(const Readout& readout, const OverlayStatus& status) 
                                                    static_cast<std::size_t>(freedom))),
                     freedom),
         translated("Number of degrees of freedom that a step may move"));
-    reading(translated("hand"), std::string(grip_names[static_cast<std::size_t>(scene_.hand.grip)]),
+    reading(translated("hand"),
+            std::string(grip_names[static_cast<std::size_t>(scene_.hands.front().grip)]),
             translated("How firmly the emulated hand holds the handle (hand.grip of the scene)"));
     reading(translated("step"),
             format_translated("{:.3f} ms of {} ms", readout.step_ms, settings_.period_ms),

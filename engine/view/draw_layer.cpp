@@ -335,7 +335,7 @@ void draw_surface(const FrameParts& parts, std::span<const AtomLook> looks,
     } else {
         constexpr std::size_t blocks = 8;  // some milliseconds
         budget.emplace().blocks = blocks;
-        budget->near = held_place(parts.world, first_hand(parts.world));
+        budget->near = held_place(parts.world, hand_at(parts.world, 0));
     }
     const SurfaceUpdate update = kept.cache->update(places, budget);
     for (const BlockIndex& block : update.changed) kept.potentials.erase(block);

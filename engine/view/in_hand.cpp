@@ -18,7 +18,7 @@ std::vector<bool> find_held_atoms(const World& world) {
 
 std::vector<bool> find_in_hand(const World& world) {
     std::vector<bool> in_hand = find_held_atoms(world);
-    const AtomRange first = held_range(world, first_hand(world));
+    const AtomRange first = held_range(world, hand_at(world, 0));
     std::fill_n(in_hand.begin() + static_cast<std::ptrdiff_t>(first.first), first.count, true);
     return in_hand;
 }

@@ -213,7 +213,7 @@ TEST_CASE("the paper's chain alone is for devices that are not real", "[app][thr
     const PlayedHandle played{PlayedHandleSettings{}};
     const World world = load_world(scene);
     const auto has_whole_chain = [&](const Device& device) {
-        return build_servo_settings(scene, world, device.spec()).safety.is_full;
+        return build_servo_settings(scene, world, 0, device.spec()).safety.is_full;
     };
 
     CHECK(has_whole_chain(real));

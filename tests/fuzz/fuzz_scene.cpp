@@ -51,6 +51,7 @@ public:
         return {chosen};
     }
     bool is_there(const Field& /*field*/, bool there) override { return there; }
+    bool is_list(const Field& /*field*/, bool list) override { return list; }
     void real(const Field& field, double& value) override {
         PALPA_EXPECT(std::isfinite(value) && value >= field.lowest && value <= field.highest);
     }

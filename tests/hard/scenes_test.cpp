@@ -64,7 +64,7 @@ public:
         : scene_(scene_in(path, way, settings)),
           way_(way),
           world_(load_world(scene_)),
-          felt_(local_contact_of(world_).model),
+          felt_(contact_at(world_, 0).model),
           first_energy_(find_energy(world())) {}
     Watched(const Watched&) = delete;
     Watched& operator=(const Watched&) = delete;
@@ -73,22 +73,22 @@ public:
     // Moves what the hand holds.
     StepReport move(const Vec3& by) {
         handle_m_ += by * scene_.coupling.A_d / units::angstrom_per_metre;
-        const Vec3 held = held_place(world(), first_hand(world()));
+        const Vec3 held = held_place(world(), hand_at(world(), 0));
         const TorsionState before = world().resource<TorsionState>();
         const double energy = find_energy(world());
         const StepReport& report = step_world(world_, hand_pose(), felt_);
         look_at(report);
         if (report.finite) {
-            CHECK(((held_place(world(), first_hand(world())) - held) - by).norm() <=
+            CHECK(((held_place(world(), hand_at(world(), 0)) - held) - by).norm() <=
                   1e-9 * (1 + by.norm()));
             look_at_energies(*report.relaxed, before, energy, by);
         } else {
-            CHECK((held_place(world(), first_hand(world())) - held).norm() == 0);
+            CHECK((held_place(world(), hand_at(world(), 0)) - held).norm() == 0);
             // To rounding: they are had from the coordinates again.
             CHECK(find_largest_move(world().resource<TorsionState>().positions, before.positions) <=
                   1e-9);
         }
-        felt_ = local_contact_of(world()).model;
+        felt_ = contact_at(world(), 0).model;
         return report;
     }
 
@@ -124,10 +124,10 @@ private:
         CHECK(report.finite == report.relaxed->is_finite);
         CHECK(test::is_finite(world().resource<TorsionState>()));
         CHECK(world_.resource<AtomTable>().positions == world().resource<TorsionState>().positions);
-        CHECK(local_contact_of(world()).model.force_newton.allFinite());
-        CHECK(local_contact_of(world()).model.torque_newton_metre.allFinite());
-        CHECK(std::isfinite(local_contact_of(world()).model.stiffness_N_per_m));
-        CHECK(std::isfinite(local_contact_of(world()).model.potential_kcal_per_mol));
+        CHECK(contact_at(world(), 0).model.force_newton.allFinite());
+        CHECK(contact_at(world(), 0).model.torque_newton_metre.allFinite());
+        CHECK(std::isfinite(contact_at(world(), 0).model.stiffness_N_per_m));
+        CHECK(std::isfinite(contact_at(world(), 0).model.potential_kcal_per_mol));
     }
 
     void look_at_energies(const RelaxStepReport& relaxed, const TorsionState& before, double energy,
@@ -306,7 +306,7 @@ TEST_CASE("a hand thrown out of the world and back", "[hard]") {
         INFO(way.name);
         SceneDescription scene = scene_in(peptides, way, settings);
         World world = load_world(scene);
-        ContactModel felt = local_contact_of(world).model;
+        ContactModel felt = contact_at(world, 0).model;
         HandPose pose;
         pose.travel_m = Vec3(far, -far, 0) * scene.coupling.A_d / units::angstrom_per_metre;
         const std::vector<Vec3> before = world.resource<AtomTable>().positions;
@@ -314,12 +314,12 @@ TEST_CASE("a hand thrown out of the world and back", "[hard]") {
         const StepReport& report = step_world(world, pose, felt);
 
         CHECK(test::is_finite(world.resource<TorsionState>()));
-        CHECK(local_contact_of(world).model.force_newton.allFinite());
+        CHECK(contact_at(world, 0).model.force_newton.allFinite());
         if (!report.finite)
             CHECK(find_largest_move(world.resource<AtomTable>().positions, before) <=
                   (way.is_renewed ? 1e-9 : 0));
         // And on from there.
-        take_hold(world, first_hand(world), {});
+        take_hold(world, hand_at(world, 0), {});
         CHECK(step_world(world, {}, felt).finite);
         CHECK(test::is_finite(world.resource<TorsionState>()));
     }

@@ -3,6 +3,7 @@
 #include "core/units.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
+#include "simulation/held.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "tests/support/paths.h"
@@ -18,7 +19,7 @@ TEST_CASE("the continuous law is the static law along a line", "[experiments][co
     const SceneDescription scene =
         read_scene(test::in_project("scenes/water"), std::vector<std::string>{});
     const World world = load_world(scene);
-    const ServoSettings servo = build_servo_settings(scene, world);
+    const ServoSettings servo = build_servo_settings(scene, world, 0);
     ContinuousLaw law(*servo.guarded, load_world(scene));
     const double from = law.pose().place_angstrom.x();
 
@@ -30,15 +31,14 @@ TEST_CASE("the continuous law is the static law along a line", "[experiments][co
     CHECK(law.pose().place_angstrom.x() == Approx(from).margin(1e-4));
     CHECK(std::abs(law.work_joule()) < 1e-3 * std::abs(way_in_J));
     // The integral of f(F) A_d over the way.
+    const CouplingLaws& laws = coupling_of(world, hand_at(world, 0)).laws;
     double work = 0;
     const int steps = 20000;
     for (int i = 0; i < steps; ++i) {
         const LineForce line =
             force_along_line_at(world, from + (i + 0.5) / steps * (inside - from));
-        work += hand_force(world.resource<Coupling>().laws.force,
-                           line.force * units::newton_per_kcal_per_mol_angstrom) *
-                gain_where(servo, world, line) * (inside - from) / steps *
-                units::metre_per_angstrom;
+        work += hand_force(laws.force, line.force * units::newton_per_kcal_per_mol_angstrom) *
+                gain_where(servo, laws, line) * (inside - from) / steps * units::metre_per_angstrom;
     }
     CHECK(way_in_J == Approx(work).epsilon(1e-3));
 }
@@ -52,7 +52,7 @@ TEST_CASE("the continuous law turns what turns with the handle, and nothing else
                                                   : "molecules.moved.motion=translate",
                                             "start_offset_angstrom=[6, 0, 0]"});
     const World world = load_world(scene);
-    const ServoSettings servo = build_servo_settings(scene, world);
+    const ServoSettings servo = build_servo_settings(scene, world, 0);
     ContinuousLaw law(*servo.guarded, load_world(scene));
     const MoleculePose start = law.pose();
     const Quat turned = turn_of(Vec3(0.3, -0.2, 0.1));

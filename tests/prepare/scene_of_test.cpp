@@ -153,7 +153,7 @@ TEST_CASE("names with odd letters read as they were written", "[prepare][scene]"
     CHECK(read.title == "title " + odd);
     CHECK(read.about == "about " + odd);
     CHECK(read.made_by == "made by " + odd);
-    CHECK(read.grab.molecule == odd);
+    CHECK(read.hands.front().grab.molecule == odd);
     CHECK(std::ranges::count(read.molecules, odd, &MoleculeDescription::name) == 1);
     CHECK(std::ranges::count(read.molecules, odd, &MoleculeDescription::segment) == 1);
 }

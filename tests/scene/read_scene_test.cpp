@@ -78,10 +78,10 @@ TEST_CASE("a scene says what it says, and defaults for the rest", "[scene][read]
     CHECK(scene.molecules[1].segment == "MOV");
     CHECK(scene.molecules[1].reference_atom == "OH2");
     CHECK(scene.molecules[1].motion == Motion::AlongX);
-    CHECK(scene.grab.molecule == "moved");
-    CHECK(scene.grab.measured_from == "fixed");
-    CHECK(scene.hand.grip == HandGrip::Medium);
-    CHECK_FALSE(scene.hand.start_angstrom.has_value());
+    CHECK(scene.hands.front().grab.molecule == "moved");
+    CHECK(scene.hands.front().grab.measured_from == "fixed");
+    CHECK(scene.hands.front().grip == HandGrip::Medium);
+    CHECK_FALSE(scene.hands.front().start_angstrom.has_value());
     CHECK(scene.coupling.mode == CouplingMode::Guarded);
     CHECK(scene.device.servo_delay_ticks == 1);
     CHECK(scene.period_ms == 1);
@@ -103,12 +103,12 @@ period_ms = 20
 )",
                                                file);
 
-    CHECK(grip_names[static_cast<std::size_t>(scene.hand.grip)] == "firm-grip");
-    CHECK(scene.hand.stroke == Stroke::Path);
-    CHECK(scene.hand.start_angstrom == 7.0);
-    REQUIRE(scene.hand.path.size() == 2);
-    CHECK(scene.hand.path[0] == PathPoint{0, {0.5, 0, 0}});
-    CHECK(scene.hand.path[1] == PathPoint{1.5, {-2, 0, 0}});
+    CHECK(grip_names[static_cast<std::size_t>(scene.hands.front().grip)] == "firm-grip");
+    CHECK(scene.hands.front().stroke == Stroke::Path);
+    CHECK(scene.hands.front().start_angstrom == 7.0);
+    REQUIRE(scene.hands.front().path.size() == 2);
+    CHECK(scene.hands.front().path[0] == PathPoint{0, {0.5, 0, 0}});
+    CHECK(scene.hands.front().path[1] == PathPoint{1.5, {-2, 0, 0}});
     CHECK(scene.device.servo_delay_ticks == 7);
     CHECK(scene.coupling.mode == CouplingMode::ConstantForceConstantDisplacement);
     CHECK(scene.coupling.A_d == 2.5e8);
@@ -529,12 +529,14 @@ TEST_CASE("a setting's value is TOML or a bare word", "[scene][settings]") {
     CHECK(with({"title=two words, with a comma"}).title == "two words, with a comma");
     CHECK(with({"title=\"quoted # text\""}).title == "quoted # text");
     CHECK(with({"title=\"a=b\""}).title == "a=b");
-    CHECK(grip_names[static_cast<std::size_t>(with({"grip=firm-grip"}).hand.grip)] == "firm-grip");
-    CHECK(with({"start_angstrom=2.5"}).hand.start_angstrom == 2.5);
-    CHECK(with({"path=[[0, 1], [2, 3.5]]", "stroke=path"}).hand.path[1] ==
+    CHECK(grip_names[static_cast<std::size_t>(with({"grip=firm-grip"}).hands.front().grip)] ==
+          "firm-grip");
+    CHECK(with({"start_angstrom=2.5"}).hands.front().start_angstrom == 2.5);
+    CHECK(with({"path=[[0, 1], [2, 3.5]]", "stroke=path"}).hands.front().path[1] ==
           PathPoint{2, {3.5, 0, 0}});
-    CHECK(with({"path=[[0, 1, 2, 3], [2, 3, 4, 5, 6, 7, 8]]", "stroke=path"}).hand.path[1] ==
-          PathPoint{2, {3, 4, 5}, {6, 7, 8}});
+    CHECK(
+        with({"path=[[0, 1, 2, 3], [2, 3, 4, 5, 6, 7, 8]]", "stroke=path"}).hands.front().path[1] ==
+        PathPoint{2, {3, 4, 5}, {6, 7, 8}});
     CHECK(with({"molecules.fixed.reference_atom=H1"}).molecules[0].reference_atom == "H1");
 }
 
@@ -645,7 +647,7 @@ TEST_CASE("joints, rest and a spring are read, and are as documented otherwise",
     CHECK(method_of(plain.statics) == RelaxMethod::SecondOrder);
     CHECK(plain.statics.pairs == PairPrecision::Fast);
     CHECK_FALSE(plain.statics.cutoff_angstrom.has_value());
-    CHECK(plain.grab.atom.empty());
+    CHECK(plain.hands.front().grab.atom.empty());
 
     const SceneDescription scene =
         parse_scene(replaced(replaced(base, "measured_from = \"fixed\"",
@@ -674,8 +676,8 @@ relax_steps = 0
     CHECK(scene.has_statics());
     CHECK(scene.molecules[1].motion == Motion::Free);
     CHECK(scene.molecules[1].shape == Shape::Flexible);
-    CHECK(scene.grab.atom == "1 OH2");
-    CHECK(scene.grab.spring_kcal_per_mol_angstrom2 == 3.5);
+    CHECK(scene.hands.front().grab.atom == "1 OH2");
+    CHECK(scene.hands.front().grab.spring_kcal_per_mol_angstrom2 == 3.5);
     CHECK_FALSE(scene.joints.hydroxyl);
     CHECK(scene.joints.methyl);
     CHECK(scene.joints.turn == std::vector<std::string>{"A 25 CB CG", "A 25 C 26 N"});

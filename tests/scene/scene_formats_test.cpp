@@ -65,7 +65,7 @@ TEST_CASE("of a newer minor format what is unknown is left out with a note", "[s
     CHECK(read.view.colouring == Colouring::Element);
     CHECK(read.view.representation == SceneDescription().view.representation);
     REQUIRE(read.notes.size() == 4);
-    CHECK_THAT(read.notes[0], Contains("scene format 2.99 is newer than 2.1"));
+    CHECK_THAT(read.notes[0], Contains("scene format 2.99 is newer than 2.2"));
     CHECK_THAT(read.notes[1],
                Contains("'view.representation' is the text \"hologram\"") && Contains("left out"));
     CHECK_THAT(read.notes[2], Contains("the key 'view.sparkle'"));
@@ -89,8 +89,8 @@ TEST_CASE("another major format is refused with what to do, whatever else is wro
         refusal_of(scene_text("format = \"3.0\"", "[later]\nkey = 1\n")),
         Contains("scene format 3.0 is newer than this program reads") && Contains("a newer Palpa"));
     CHECK_THAT(refusal_of(scene_text("format = \"1\"")),
-               Contains("scene format 1.0 is older than this program reads; expected format 2.1"));
-    CHECK_THAT(refusal_of(scene_text("format = \"two\"")), Contains("expected a version, \"2.1\""));
+               Contains("scene format 1.0 is older than this program reads; expected format 2.2"));
+    CHECK_THAT(refusal_of(scene_text("format = \"two\"")), Contains("expected a version, \"2.2\""));
     CHECK_THAT(refusal_of(scene_text("format = 2")),
                Contains("'format' is 2; expected text in quotes"));
 }

@@ -54,21 +54,21 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     scene.force_field.solvent = Solvent::Eef1Sb;
     scene.molecules[1].name = "";
     scene.molecules[1].segment = "#";
-    scene.grab = {"x", scene.molecules[0].name, "", 0.1 + 0.2};
+    scene.hands.front().grab = {"x", scene.molecules[0].name, "", 0.1 + 0.2};
     scene.joints.methyl = true;
     scene.joints.turn = {"A 1 \"C\" N", ""};
     scene.statics.near_angstrom = 0.1 + 12;
     scene.molecules[1].name = "x";
-    scene.hand.grip = HandGrip::FirmGrip;
-    scene.hand.stroke = Stroke::Path;
-    scene.hand.start_angstrom = std::numeric_limits<double>::denorm_min();
-    scene.hand.release_s = 1e-3;
-    scene.hand.kick_N_s = -0.0;
-    scene.hand.peak_nN = 0.1 + 0.2;
-    scene.hand.path = {{-1e5, {1.0 / 3}},
-                       {-0.0, {5e-324}},
-                       {1e4 / 3, {-1e5, 0, 0.1}},
-                       {12345.678901234567, {1e5 / 7, 0.7, 0}, {0, 1.0 / 3, 0}}};
+    scene.hands.front().grip = HandGrip::FirmGrip;
+    scene.hands.front().stroke = Stroke::Path;
+    scene.hands.front().start_angstrom = std::numeric_limits<double>::denorm_min();
+    scene.hands.front().release_s = 1e-3;
+    scene.hands.front().kick_N_s = -0.0;
+    scene.hands.front().peak_nN = 0.1 + 0.2;
+    scene.hands.front().path = {{-1e5, {1.0 / 3}},
+                                {-0.0, {5e-324}},
+                                {1e4 / 3, {-1e5, 0, 0.1}},
+                                {12345.678901234567, {1e5 / 7, 0.7, 0}, {0, 1.0 / 3, 0}}};
     scene.device.servo_delay_ticks = 7;
     scene.coupling.mode = CouplingMode::NoForce;
     scene.coupling.A_f_min = 1 + std::numeric_limits<double>::epsilon();
@@ -115,7 +115,7 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     CHECK(back.molecules[0].name == scene.molecules[0].name);
     CHECK(back.molecules[0].segment == " FIX ");
     CHECK(back.molecules[1].motion == Motion::AlongX);
-    CHECK(back.grab.spring_kcal_per_mol_angstrom2 == 0.1 + 0.2);
+    CHECK(back.hands.front().grab.spring_kcal_per_mol_angstrom2 == 0.1 + 0.2);
     CHECK(back.joints.methyl);
     CHECK(back.joints.turn == scene.joints.turn);
     CHECK(back.statics.near_angstrom == scene.statics.near_angstrom);
@@ -124,11 +124,11 @@ TEST_CASE("odd values survive being written and read, to the last bit", "[scene]
     CHECK(back.molecules[0].anchors == scene.molecules[0].anchors);
     CHECK(back.molecules[0].anchor_kcal_per_mol_angstrom2 == 0.1 + 0.2);
     CHECK_FALSE(back.molecules[1].structural_water);
-    CHECK(back.hand.start_angstrom == scene.hand.start_angstrom);
-    CHECK(std::signbit(back.hand.kick_N_s));
-    CHECK(back.hand.release_s == scene.hand.release_s);
-    CHECK(back.hand.peak_nN == scene.hand.peak_nN);
-    CHECK(back.hand.path == scene.hand.path);
+    CHECK(back.hands.front().start_angstrom == scene.hands.front().start_angstrom);
+    CHECK(std::signbit(back.hands.front().kick_N_s));
+    CHECK(back.hands.front().release_s == scene.hands.front().release_s);
+    CHECK(back.hands.front().peak_nN == scene.hands.front().peak_nN);
+    CHECK(back.hands.front().path == scene.hands.front().path);
     CHECK(back.coupling.mode == CouplingMode::NoForce);
     CHECK(back.coupling.A_f_min == scene.coupling.A_f_min);
     CHECK(back.coupling.feel_within_pN == 1.0 / 3);
@@ -195,7 +195,7 @@ TEST_CASE("what a step of a lesson asks, shows and does is written and read agai
 TEST_CASE("a remote engine is written and read again, without a force field", "[scene][write]") {
     SceneDescription scene = water();
     scene.force_field.files.clear();
-    scene.hand.stroke = Stroke::Hold;
+    scene.hands.front().stroke = Stroke::Hold;
     scene.engine = EngineDescription{.address = "10.0.0.7:3000",
                                      .program = EngineProgram::Lammps,
                                      .protocol = EngineProtocol::Two,
@@ -214,12 +214,12 @@ TEST_CASE("a remote engine is written and read again, without a force field", "[
 
 TEST_CASE("every field is written, under its full key", "[scene][write]") {
     SceneDescription scene = water();
-    scene.hand.start_angstrom = 3;
+    scene.hands.front().start_angstrom = 3;
     scene.lesson = {{"STEP", "text", "task", LessonQuantity::Force, 1.0, 2.0, 0.5}};
     scene.lesson[0].operator_coupling = {"mode=4"};
     scene.lesson[0].question = LessonQuestion{"why?", {"a", "b"}, 2, {"no", "yes"}};
     scene.minutes = 7;
-    scene.hand.release_s = 4;
+    scene.hands.front().release_s = 4;
     scene.joints.within_angstrom = 8;
     scene.joints.region_angstrom = 30;
     scene.statics.method = RelaxMethod::QuasiStatic;
@@ -237,8 +237,8 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
     }
     scene.restraints.push_back({{{"moved:1"}, std::array{1.0, 2.0, 3.0}}, {}});
     scene.pins.push_back({{{"moved:1 OH2"}}, {}});
-    scene.grab.place_angstrom = {1, 2, 3};
-    scene.grab.released = Motion::Fixed;
+    scene.hands.front().grab.place_angstrom = {1, 2, 3};
+    scene.hands.front().grab.released = Motion::Fixed;
     scene.engine.emplace().atoms = folder / "dimer.psf";
 
     const std::string text = formatted(scene);
@@ -249,8 +249,8 @@ TEST_CASE("every field is written, under its full key", "[scene][write]") {
     CHECK(parsed(formatted(ranged)).coupling.feel_pN == ranged.coupling.feel_pN);
     for (const FieldNote& field : list_fields()) {
         INFO(field.key);
-        // Those of edits and of a second hand: edits_test, second_hand_test.
-        if (field.key.starts_with("edits.") || field.key.starts_with("second.")) continue;
+        // Keys of edits and of several hands: edits_test, second_hand_test.
+        if (field.key.starts_with("edits.") || field.key.starts_with("hand[")) continue;
         const std::size_t dot = field.key.rfind('.');
         const std::string last = field.key.substr(dot == std::string::npos ? 0 : dot + 1);
         CHECK(("\n" + text).find("\n" + last + " = ") != std::string::npos);

@@ -25,7 +25,7 @@ AccuracyLog log_of(const std::optional<std::array<double, 2>>& range_pN,
     servo.guarded->damping_N_s_per_m = 0;
     servo.guarded->device_cap_N_per_m = 100.0 / 3;
     servo.guarded->force_law = PerceptualForceLaw::for_range(20e-12, 3e-9);
-    return {scene, servo};
+    return {scene, 0, servo};
 }
 
 ServoTick tick_that_felt(double felt_N_per_m, double cap_ratio) {
@@ -35,12 +35,12 @@ ServoTick tick_that_felt(double felt_N_per_m, double cap_ratio) {
     return tick;
 }
 
-RelaxStepReport step_of(std::size_t active, std::optional<double> estimated_error_pN) {
+void add_step(AccuracyLog& log, std::size_t active, std::optional<double> error_pN) {
     RelaxStepReport report;
     report.active = active;
     report.steps = 2;
-    report.estimated_error_pN = estimated_error_pN;
-    return report;
+    report.estimated_error_pN = error_pN;
+    log.add_step(report, error_pN);
 }
 
 }  // namespace
@@ -59,8 +59,8 @@ TEST_CASE("what was felt of a range, and what was not so exact", "[session][accu
     ServoTick warm = tick_that_felt(20, 1);
     warm.stage = SafetyStage::ThermalLimit;
     log.add(warm);
-    for (int i = 1; i <= 10; ++i) log.add_step(step_of(30 + 2 * i, 10.0 * i));
-    log.add_step(step_of(8, {}));
+    for (int i = 1; i <= 10; ++i) add_step(log, 30 + 2 * i, 10.0 * i);
+    add_step(log, 8, {});
 
     const std::optional<AccuracyReport> report = log.report(25e3);
     REQUIRE(report);
@@ -104,9 +104,9 @@ TEST_CASE("where nothing moves by itself the servo's guess is what is looked at"
 
 TEST_CASE("what an error estimate finds stands for the steps before it", "[session][accuracy]") {
     AccuracyLog log = log_of({}, 50.0);
-    for (int i = 0; i < 80; ++i) log.add_step(step_of(8, {}));
-    log.add_step(step_of(8, 60.0));
-    for (int i = 0; i < 19; ++i) log.add_step(step_of(8, 1.0));
+    for (int i = 0; i < 80; ++i) add_step(log, 8, {});
+    add_step(log, 8, 60.0);
+    for (int i = 0; i < 19; ++i) add_step(log, 8, 1.0);
 
     const AccuracyReport report = log.report(0).value_or(AccuracyReport{});
     CHECK(report.estimates == 20);
@@ -118,7 +118,7 @@ TEST_CASE("what an error estimate finds stands for the steps before it", "[sessi
 TEST_CASE("a tolerance of which no error was estimated does not count as met",
           "[session][accuracy]") {
     AccuracyLog log = log_of({}, 50.0);
-    for (int i = 0; i < 20; ++i) log.add_step(step_of(8, {}));
+    for (int i = 0; i < 20; ++i) add_step(log, 8, {});
 
     const AccuracyReport report = log.report(0).value_or(AccuracyReport{});
     CHECK(report.estimates == 0);
@@ -128,8 +128,8 @@ TEST_CASE("a tolerance of which no error was estimated does not count as met",
 TEST_CASE("no requirement is unmet where everything holds", "[session][accuracy]") {
     AccuracyLog log = log_of(std::array{20.0, 3000.0}, 50.0);
     log.add(tick_that_felt(33, 1));
-    for (int i = 1; i <= 9; ++i) log.add_step(step_of(8, 50.0));
-    log.add_step(step_of(8, 51.0));
+    for (int i = 1; i <= 9; ++i) add_step(log, 8, 50.0);
+    add_step(log, 8, 51.0);
 
     const std::optional<AccuracyReport> report = log.report(9.9e3);
     REQUIRE(report);
@@ -143,7 +143,7 @@ TEST_CASE("however many error estimates there are, their shares hold to one in t
     AccuracyLog log = log_of({}, 0.25 * estimates);
     for (int i = 0; i < estimates; ++i) {
         const auto error = static_cast<double>(std::int64_t{i} * stride % estimates);
-        log.add_step(step_of(8, error));
+        add_step(log, 8, error);
     }
 
     const AccuracyReport report = log.report(0).value_or(AccuracyReport{});

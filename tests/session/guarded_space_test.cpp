@@ -55,13 +55,13 @@ InSpace run_in_space(const GuardedCase& c, const Vec3& x) {
         water_scene({"mode=guarded", "stroke=hold", "period_ms=" + std::to_string(c.period_ms),
                      "molecules.moved.motion=translate"});
     World world = load_world(scene);
-    const Vec3 start = local_contact_of(world).model.molecule.place_angstrom;
+    const Vec3 start = contact_at(world, 0).model.molecule.place_angstrom;
     TurnedOmni omni(c, x);
     InSpace result;
     std::array<std::vector<double>, 3> sent;
     const auto step = [&](const HandPose& hand, const ContactModel& felt) {
         (void)step_world(world, hand, felt);
-        return local_contact_of(world);
+        return contact_at(world, 0);
     };
     const auto on_tick = [&](const ServoTick& tick) {
         result.off_angstrom = (tick.contact.molecule.place_angstrom - start).norm();
@@ -71,10 +71,10 @@ InSpace run_in_space(const GuardedCase& c, const Vec3& x) {
         for (std::size_t axis = 0; axis < sent.size(); ++axis)
             sent[axis].push_back(tick.sent_newton(static_cast<Eigen::Index>(axis)));
     };
-    ServoSettings servo = build_servo_settings(scene, world);
+    ServoSettings servo = build_servo_settings(scene, world, 0);
     servo.safety.thermal_limit_newton = c.thermal_limit_newton;
     const auto ticks = static_cast<std::uint64_t>(c.seconds * servo_rate_hz);
-    run_lockstep({ticks, c.period_ms}, servo, omni, local_contact_of(world), step, on_tick);
+    run_lockstep({ticks, c.period_ms}, servo, omni, contact_at(world, 0), step, on_tick);
     for (const std::vector<double>& axis : sent) {
         const std::span<const double> end(
             axis.end() - std::min<std::ptrdiff_t>(std::ssize(axis), 4000), axis.end());

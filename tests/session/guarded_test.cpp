@@ -309,19 +309,19 @@ TEST_CASE("guarded, no way into the well and out of it with warm motors gives en
     const SceneDescription scene =
         water_scene({"mode=guarded", "start_angstrom=7", "period_ms=14"});
     World world = load_world(scene);
-    ServoSettings servo = build_servo_settings(scene, world);
+    ServoSettings servo = build_servo_settings(scene, world, 0);
     servo.safety.thermal_limit_newton = gets_hot ? 0.2 : 0.9;
     servo.safety.heat_s = gets_hot ? 100 : 1e9;
     if (!gets_hot) servo.safety.clamp_newton = 0.2;  // on the way in as well: nothing to find
     LedHandle handle;
     const auto step = [&](const HandPose& hand, const ContactModel& felt) {
         (void)step_world(world, hand, felt);
-        return local_contact_of(world);
+        return contact_at(world, 0);
     };
     double work_J = 0;
 
     run_lockstep(
-        {200'000, 14}, servo, handle, local_contact_of(world), step,
+        {200'000, 14}, servo, handle, contact_at(world, 0), step,
         [&](const ServoTick& tick) { work_J = tick.hand_energy_J; },
         [&] { return handle.is_home(); });
 

@@ -29,10 +29,10 @@ std::vector<ServoTick> ticks_of(const std::string& path, const std::vector<std::
     run_lockstep(
         {static_cast<std::uint64_t>(scene.seconds * servo_rate_hz),
          static_cast<std::uint64_t>(scene.period_ms)},
-        build_servo_settings(scene, world), device, local_contact_of(world),
+        build_servo_settings(scene, world, 0), device, contact_at(world, 0),
         [&](const HandPose& hand, const ContactModel& felt) {
             (void)step_world(world, hand, felt);
-            return local_contact_of(world);
+            return contact_at(world, 0);
         },
         [&](const ServoTick& tick) { ticks.push_back(tick); });
     return ticks;
@@ -81,7 +81,7 @@ TEST_CASE("in space the stiffest the hand feels is an eigenvalue, whatever its d
     const SceneDescription scene =
         read_scene(test::in_project("scenes/hiv"), std::vector<std::string>{"mode=4"});
     const World world = load_world(scene);
-    const ContactModel rest = local_contact_of(world).model;
+    const ContactModel rest = contact_at(world, 0).model;
 
     const FeltStiffness stiffest = stiffest_place(scene, world);
 

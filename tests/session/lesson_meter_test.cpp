@@ -111,20 +111,20 @@ TEST_CASE("the hand's work is what the energy has risen by, and its way how far 
     scene.lesson = {asking(LessonQuantity::Work), asking(LessonQuantity::Way)};
     World world = load_world(scene);
     const double start = grabbed_distance(world);
-    const double energy = local_contact_of(world).model.potential_kcal_per_mol;
+    const double energy = contact_at(world, 0).model.potential_kcal_per_mol;
     EmulatedOmni device(test::build_played_omni(scene, world));
     LessonMeter meter(scene, world);
 
     run_lockstep(
-        {6000, 1}, build_servo_settings(scene, world), device, local_contact_of(world).model,
+        {6000, 1}, build_servo_settings(scene, world, 0), device, contact_at(world, 0).model,
         [&](const HandPose& hand, const ContactModel& felt) {
             (void)step_world(world, hand, felt);
             meter.measure(world);
-            return local_contact_of(world);
+            return contact_at(world, 0);
         },
         [](const ServoTick&) {});
 
-    const double risen = local_contact_of(world).model.potential_kcal_per_mol - energy;
+    const double risen = contact_at(world, 0).model.potential_kcal_per_mol - energy;
     REQUIRE(risen < -4);  // into the bond
     CHECK(meter.measures().values[0] == Approx(risen).margin(0.01));
     CHECK(meter.measures().values[1] ==

@@ -33,10 +33,10 @@ Lesson play_water(const std::vector<std::string>& settings, Lesson lesson) {
     EmulatedOmni device(test::build_played_omni(scene, world));
     const auto step = [&](const HandPose& hand, const ContactModel& felt) {
         (void)step_world(world, hand, felt);
-        return local_contact_of(world);
+        return contact_at(world, 0);
     };
     run_lockstep({static_cast<std::uint64_t>(scene.seconds * servo_rate_hz), 1},
-                 build_servo_settings(scene, world), device, local_contact_of(world).model, step,
+                 build_servo_settings(scene, world, 0), device, contact_at(world, 0).model, step,
                  [&](const ServoTick& tick) {
                      lesson.update(read_tick(tick), scene.coupling.mode);
                      lesson.go_on();

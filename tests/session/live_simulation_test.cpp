@@ -80,10 +80,10 @@ TEST_CASE("while a long edit is made the world stands still, and nothing of it i
     live.step(1e-4);
     if (has_thread) worker.join();
     CHECK(live.positions() == before);
-    CHECK(held_atoms(live.world(), first_hand(live.world())).size() > 100);
+    CHECK(held_atoms(live.world(), hand_at(live.world(), 0)).size() > 100);
     live.play(AdoptEvent{});
 
-    const Entity hand = first_hand(live.world());
+    const Entity hand = hand_at(live.world(), 0);
     CHECK(live.positions() == before);
     CHECK(held_atoms(live.world(), hand) == held_atoms(expected, hand));
     CHECK(live.simulation.readout().edit_under_way.empty());

@@ -73,7 +73,7 @@ TEST_CASE("a force that the molecules never reach is an error at the peak's key"
 TEST_CASE("a stroke with a peak is refused where the hand holds a spring", "[session][hand]") {
     SceneDescription scene = test::water_scene({"hand.stroke=in-out"});
     const World world = load_world(scene);
-    scene.grab.atom = "OH2";
+    scene.hands.front().grab.atom = "OH2";
 
     CHECK_THROWS_WITH(plan_hand(scene, world, omni_half_workspace_m.x()),
                       Contains("--set hand.stroke=in-out: ") && Contains("\"path\" or \"hold\""));

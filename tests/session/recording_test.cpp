@@ -375,7 +375,9 @@ TEST_CASE("the summary names a second hand under its own key, and only where the
           "[session][recording]") {
     Summary summary;
     summary.largest_felt_N = 1;
-    const std::string alone = format_summary(test::water_scene(), summary);
+    SceneDescription scene = test::water_scene();
+    scene.hands.resize(2);
+    const std::string alone = format_summary(scene, summary);
     Summary second;
     second.device = "a second Omni";
     second.largest_felt_N = 2;
@@ -383,7 +385,7 @@ TEST_CASE("the summary names a second hand under its own key, and only where the
     second.is_on_axis = false;
     summary.other_hands.push_back(second);
 
-    const auto json = nlohmann::json::parse(format_summary(test::water_scene(), summary));
+    const auto json = nlohmann::json::parse(format_summary(scene, summary));
 
     CHECK(json["largest_felt_N"] == 1);
     CHECK(json["hand_2"]["device"] == "a second Omni");

@@ -69,9 +69,9 @@ std::string describe_identity(const World& world) {
 // Moves what the first hand holds, by one of these ways (Å) in each step.
 void pull(World& world, const std::vector<Vec3>& ways) {
     for (const Vec3& way : ways) {
-        HandPose hand{.molecule = grip_of(world, first_hand(world)).pose};
+        HandPose hand{.molecule = grip_of(world, hand_at(world, 0)).pose};
         hand.molecule->place_angstrom += way;
-        const ContactModel felt = local_contact_of(world).model;
+        const ContactModel felt = contact_at(world, 0).model;
         REQUIRE(step_world(world, hand, felt).finite);
     }
 }
@@ -117,7 +117,8 @@ World check_saved(const World& world) {
         const Vec3 off = held_place(opened, hands_again[i]) - held_place(world, hands[i]);
         CHECK(off.norm() < 2 * last_digit);
     }
-    CHECK(opened.resource<Coupling>().description == world.resource<Coupling>().description);
+    CHECK(coupling_of(opened, hand_at(opened, 0)).description ==
+          coupling_of(world, hand_at(world, 0)).description);
     save_scene(opened, view, second.path() / "saved.toml", "Saved.", Existing::Refuse);
     CHECK(find_difference(first.path() / "saved.toml", second.path() / "saved.toml").empty());
     return opened;

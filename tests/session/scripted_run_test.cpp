@@ -239,7 +239,7 @@ TEST_CASE("lines that are wrong are refused and change nothing", "[session][comm
     CHECK_THAT(why("hand_mm = [1, 2]"), Contains("expected three numbers"));
     CHECK_THAT(why("hand_mm = [1, 2, 2000]"), Contains("from -1000 to 1000"));
     CHECK_THAT(why("hand = \"second\", let_go = true"), Contains("the scene has one hand"));
-    CHECK_THAT(why("hand = \"third\", let_go = true"), Contains("one of first, second"));
+    CHECK_THAT(why("hand = \"fifth\", let_go = true"), Contains("one of first, second"));
     CHECK_THAT(why("hand = \"first\""), Contains("the line has none of the keys take"));
     CHECK_THAT(why("take = \"moved\", let_go = true"), Contains("expected one of them"));
     CHECK_THAT(why("at_s = 3, let_go = true"), Contains("unknown key 'at_s'"));

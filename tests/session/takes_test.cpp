@@ -120,8 +120,8 @@ TakesRun run_takes(SceneDescription scene, const std::vector<EditDescription>& e
                 if (change.holds) {
                     change.felt = contact.force_newton;
                     change.truth = expected_force(world, hand, contact);
-                    change.law =
-                        hand_force(world.resource<Coupling>().laws.force, contact.force_newton);
+                    change.law = hand_force(coupling_of(world, hand_at(world, 0)).laws.force,
+                                            contact.force_newton);
                 }
                 result.changes.push_back(change);
             }

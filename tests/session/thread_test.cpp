@@ -17,9 +17,9 @@ TEST_CASE("the water scene runs on two threads without a race", "[session][threa
     const SceneDescription scene = test::water_scene({"stroke_s=0.5"});
     World world = load_world(scene);
     EmulatedOmni device(test::build_played_omni(scene, world));
-    const ServoSettings settings = build_servo_settings(scene, world);
+    const ServoSettings settings = build_servo_settings(scene, world, 0);
     Exchange exchange;
-    ContactModel felt = local_contact_of(world).model;
+    ContactModel felt = contact_at(world, 0).model;
     exchange.contact.post(felt);
     std::atomic<bool> done = false;
     std::atomic<int> steps = 0;
@@ -31,7 +31,7 @@ TEST_CASE("the water scene runs on two threads without a race", "[session][threa
             if (!exchange.hand.read(hand)) continue;
             const StepReport& report = step_world(world, hand, felt);
             finite = finite && report.finite;
-            felt = local_contact_of(world).model;
+            felt = contact_at(world, 0).model;
             exchange.contact.post(felt);
             ++steps;
         }

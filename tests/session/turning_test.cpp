@@ -57,10 +57,10 @@ Run run(const SceneDescription& scene, const Rail::Way& way) {
     run_lockstep(
         {static_cast<std::uint64_t>(scene.seconds * servo_rate_hz),
          static_cast<std::uint64_t>(scene.period_ms)},
-        build_servo_settings(scene, world), rail, local_contact_of(world),
+        build_servo_settings(scene, world, 0), rail, contact_at(world, 0),
         [&](const HandPose& hand, const ContactModel& felt) {
             (void)step_world(world, hand, felt);
-            return local_contact_of(world);
+            return contact_at(world, 0);
         },
         [&](const ServoTick& tick) { result.ticks.push_back(tick); });
     return result;
@@ -87,8 +87,8 @@ TEST_CASE("the molecule turns as the handle does, in the servo and in the simula
     CHECK(last.molecule.orientation.angularDistance(expected) < 1e-6);
     // The hydrogens have gone to the other side of the oxygen, which stays.
     const World before = load_world(scene);
-    const std::span<const Vec3> is = held_points(turned.world, first_hand(turned.world)).positions,
-                                was = held_points(before, first_hand(before)).positions;
+    const std::span<const Vec3> is = held_points(turned.world, hand_at(turned.world, 0)).positions,
+                                was = held_points(before, hand_at(before, 0)).positions;
     CHECK((is[1] - is[0] - expected * (was[1] - was[0])).norm() < 1e-6);
     CHECK((is[0] - was[0]).norm() < 1e-6);
 }
@@ -122,7 +122,7 @@ TEST_CASE("what the servo finds of a turned molecule is what the simulation find
     REQUIRE(force.norm() > 20e-12);
     CHECK((servo.force_newton - force).norm() < 1e-4 * force.norm());
     const Vec3 centre =
-        centre_of_mass(there.resource<AtomTable>(), held_range(there, first_hand(there)));
+        centre_of_mass(there.resource<AtomTable>(), held_range(there, hand_at(there, 0)));
     const Vec3 torque = units::joule_per_kcal_per_mol * field.torque_about(centre);
     CHECK((servo.torque_newton_metre - torque).norm() < 1e-4 * torque.norm());
 }

@@ -342,7 +342,7 @@ ShippedResult run_shipped(std::uint32_t seed, std::uint64_t period_ms) {
                     "hand.start_offset_angstrom=[-0.4, 0, 0]",
                     "second.hand.start_offset_angstrom=[0.4, 0, 0]"});
     World world = load_world(scene);
-    const ServoSettings servo = build_servo_settings(scene, world, paths[0].spec());
+    const ServoSettings servo = build_servo_settings(scene, world, 0, paths[0].spec());
     const std::vector<Entity> hands = find_hands(world);
     TwoLaws laws(servo.guarded.value(), world);
     ShippedResult result;

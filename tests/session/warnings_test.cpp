@@ -43,7 +43,7 @@ TEST_CASE("the stiffness felt is the paper's", "[session][coupling]") {
     const World world = load_world(scene);
     const auto felt_at = [&](double distance) {
         const LineForce line = force_along_line_at(world, distance);
-        return hand_force_slope(world.resource<Coupling>().laws.force,
+        return hand_force_slope(coupling_of(world, hand_at(world, 0)).laws.force,
                                 line.force * units::newton_per_kcal_per_mol_angstrom) *
                line.stiffness * units::newton_per_metre_per_kcal_per_mol_angstrom2 / 0.25e9;
     };

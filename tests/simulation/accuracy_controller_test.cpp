@@ -11,18 +11,22 @@
 #include "tests/support/paths.h"
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 using namespace palpa;
 
 namespace {
+
+constexpr std::span<const Vec3> none;  // no hand
 
 constexpr double pico_per_kcal = units::newton_per_kcal_per_mol_angstrom * 1e12;
 
@@ -47,19 +51,19 @@ Vec3 relaxed_force(const World& world) {
     settings.steps = 20000;
     QuasiStatics statics = build_quasi_statics(model);
     (void)relax_joints(model, settings, state, statics);
-    return find_force_on_held(model, state, held_in_state(world, first_hand(world)));
+    return find_force_on_held(model, state, held_in_state(world, hand_at(world, 0)));
 }
 
 // The hand goes 2 Å towards the other molecule, and stays.
 Played play(const std::vector<std::string>& settings) {
     World world = load_world(scene_of_peptides(settings));
-    ContactModel felt = local_contact_of(world).model;
+    ContactModel felt = contact_at(world, 0).model;
     Played played;
     for (int i = 1; i <= 2000; ++i) {
         HandPose hand;
         hand.travel_m = Vec3(-0.001 * i * 0.25e9 * 1e-10, 0, 0);
         const StepReport& report = step_world(world, hand, felt);
-        felt = local_contact_of(world).model;
+        felt = contact_at(world, 0).model;
         REQUIRE(report.relaxed);
         if (const auto error_pN = report.relaxed->estimated_error_pN)
             played.errors_pN.push_back(*error_pN);
@@ -71,7 +75,7 @@ Played play(const std::vector<std::string>& settings) {
     played.positions = world.resource<AtomTable>().positions;
     played.true_error_pN =
         pico_per_kcal *
-        (find_force_on_held(world, first_hand(world)) - relaxed_force(world)).norm();
+        (find_force_on_held(world, hand_at(world, 0)) - relaxed_force(world)).norm();
     return played;
 }
 
@@ -81,7 +85,7 @@ TEST_CASE("too much error raises active joints by half, then steps", "[simulatio
     const bool has_budget = GENERATE(false, true);
     AccuracyController accuracy(50, {10, 2}, 40, has_budget);
     const auto after = [&](double error_pN) {
-        accuracy.add_estimate(error_pN, Vec3::Zero(), 20);
+        accuracy.add_estimate(error_pN, none, 20);
         return accuracy.work_budget();
     };
 
@@ -103,10 +107,10 @@ TEST_CASE("less than half the error gives back steps, then joints, by a fifth",
     double rendered_pN = 0;
     const auto after_calm = [&](double error_pN) {
         for (int i = 0; i < 5; ++i)
-            accuracy.add_estimate(error_pN, Vec3(rendered_pN += 20, 0, 0), 20);
+            accuracy.add_estimate(error_pN, std::array{Vec3(rendered_pN += 20, 0, 0)}, 20);
         return accuracy.work_budget();
     };
-    accuracy.add_estimate(60, Vec3::Zero(), 20);
+    accuracy.add_estimate(60, none, 20);
     REQUIRE(accuracy.work_budget() == WorkBudget{40, 3});
 
     CHECK(after_calm(17) == WorkBudget{40, 2});
@@ -120,13 +124,13 @@ TEST_CASE("less than half the error gives back steps, then joints, by a fifth",
 
 TEST_CASE("of many steps a fifth is given back at a time", "[simulation][accuracy]") {
     AccuracyController accuracy(50, {40, 2}, 40, false);
-    for (int i = 0; i < 30; ++i) accuracy.add_estimate(60, Vec3::Zero(), 20);
+    for (int i = 0; i < 30; ++i) accuracy.add_estimate(60, std::array{Vec3(0, 0, 0)}, 20);
     REQUIRE(accuracy.work_budget() == WorkBudget{40, AccuracyController::most_steps});
     static_assert(AccuracyController::most_steps == 20);
 
     std::vector<std::size_t> seen{accuracy.work_budget().steps};
     for (int i = 0; i < 60 && seen.size() < 4; ++i) {
-        accuracy.add_estimate(17, Vec3(20.0 * i, 0, 0), 20);
+        accuracy.add_estimate(17, std::array{Vec3(20.0 * i, 0, 0)}, 20);
         if (accuracy.work_budget().steps != seen.back())
             seen.push_back(accuracy.work_budget().steps);
     }
@@ -140,8 +144,8 @@ TEST_CASE("an error without bounds raises everything, and ends", "[simulation][a
         GENERATE(std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN());
     AccuracyController joints_and_steps(50, {8, 2}, 40, false), joints(50, {8, 2}, 40, true);
 
-    joints_and_steps.add_estimate(error_pN, Vec3::Zero(), 20);
-    joints.add_estimate(error_pN, Vec3::Zero(), 20);
+    joints_and_steps.add_estimate(error_pN, none, 20);
+    joints.add_estimate(error_pN, none, 20);
 
     CHECK(joints_and_steps.work_budget() == WorkBudget{40, AccuracyController::most_steps});
     CHECK(joints.work_budget() == WorkBudget{40, 2});
@@ -149,10 +153,11 @@ TEST_CASE("an error without bounds raises everything, and ends", "[simulation][a
 
 TEST_CASE("while the hand rests nothing is proven", "[simulation][accuracy]") {
     AccuracyController accuracy(50, {40, 2}, 40, false);
-    for (int i = 0; i < 100; ++i) accuracy.add_estimate(1, Vec3(i % 2 == 0 ? 0 : 49, 0, 0), 20);
+    for (int i = 0; i < 100; ++i)
+        accuracy.add_estimate(1, std::array{Vec3(i % 2 == 0 ? 0 : 49, 0, 0)}, 20);
 
     CHECK(accuracy.work_budget() == WorkBudget{40, 2});
-    accuracy.add_estimate(1, Vec3(51, 0, 0), 20);
+    accuracy.add_estimate(1, std::array{Vec3(51, 0, 0)}, 20);
     CHECK(accuracy.work_budget() == WorkBudget{32, 2});
 }
 
@@ -168,7 +173,7 @@ TEST_CASE(
             // No step of eight of forty joints is cheaper than by its share of them.
             work += 2 * (0.07 + 0.93 * 8 / 40);
             if (!accuracy.is_due()) continue;
-            accuracy.add_estimate(error_pN, Vec3::Zero(), 12);
+            accuracy.add_estimate(error_pN, none, 12);
             estimated += 13;
             ++estimates;
         }
@@ -199,9 +204,9 @@ TEST_CASE("an error estimate is the difference from complete relaxation",
         if (is_by_spring) TakeEdit{"held:2"}.apply(few, 0);
         move_held(few, (0.05 + 0.03 * i) * Vec3::Unit(i % 3));
         (void)relax_mobile(few, {}).value();
-        const Vec3 felt = find_force_on_held(few, first_hand(few));
+        const Vec3 felt = find_force_on_held(few, hand_at(few, 0));
         find_error(few);
-        const std::optional<double> found = find_error_estimate(few);
+        const std::optional<double> found = find_error_estimate(few, hand_at(few, 0));
         REQUIRE(found);
         const double expected = pico_per_kcal * (felt - relaxed_force(few)).norm();
         INFO(*found << " pN found, " << expected << " expected");

@@ -78,7 +78,7 @@ Vec3 middle_of_residue(const World& world, const std::string& molecule, const st
 
 TEST_CASE("any molecule can be taken as a whole", "[simulation][edit]") {
     World world = load_rigid();
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     const std::vector<Vec3> before = world.resource<AtomTable>().positions;
 
     TakeEdit{"resting"}.apply(world, 0);
@@ -93,10 +93,10 @@ TEST_CASE("any molecule can be taken as a whole", "[simulation][edit]") {
     const FieldSum field =
         evaluate_pair_field(points_of(atoms, own), points_of(atoms, other), pair_rule(world));
     const Vec3 force = field.force * units::newton_per_kcal_per_mol_angstrom;
-    CHECK((local_contact_of(world).model.force_newton - force).norm() < 1e-12 * force.norm());
+    CHECK((contact_at(world, 0).model.force_newton - force).norm() < 1e-12 * force.norm());
 
     const Vec3 by(0.3, -0.2, 0.1);
-    (void)test::step_once(world, hand_after(by), local_contact_of(world).model);
+    (void)test::step_once(world, hand_after(by), contact_at(world, 0).model);
     for (std::size_t i = 0; i < before.size(); ++i) {
         const Vec3 moved = world.resource<AtomTable>().positions[i] - before[i];
         CHECK((moved - (has_atom(own, i) ? by : Vec3(Vec3::Zero()))).norm() < 1e-9);
@@ -108,15 +108,15 @@ TEST_CASE("any residue or atom can be taken by a spring, in rigid scenes too",
     const bool is_rigid = GENERATE(true, false);
     const bool is_residue = GENERATE(true, false);
     World world = is_rigid ? load_rigid() : load_two();
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     const std::string name = is_residue ? "3" : "3 CB";
     const Vec3 start = middle_of_residue(world, "resting", name);
 
     TakeEdit{"resting:" + name}.apply(world, 0);
 
     CHECK((held_place(world, hand) - start).norm() < 1e-9);
-    CHECK(local_contact_of(world).model.force_newton.norm() < 1e-15);
-    ContactModel felt = local_contact_of(world).model;
+    CHECK(contact_at(world, 0).model.force_newton.norm() < 1e-15);
+    ContactModel felt = contact_at(world, 0).model;
     for (int i = 1; i <= 40; ++i) felt = test::step_once(world, hand_after({0, 0.02 * i, 0}), felt);
     const Vec3 now = middle_of_residue(world, "resting", name);
     CHECK((held_place(world, hand) - start - Vec3(0, 0.8, 0)).norm() < 1e-9);
@@ -129,10 +129,10 @@ TEST_CASE("any residue or atom can be taken by a spring, in rigid scenes too",
     // A hand that lets go gives back what the molecule may do, and feels nothing.
     LetGoEdit{}.apply(world, 0);
     CHECK(world.find<Grip>(hand) == nullptr);
-    CHECK(local_contact_of(world).model.is_still);
-    CHECK(local_contact_of(world).model.force_newton.norm() == 0);
+    CHECK(contact_at(world, 0).model.is_still);
+    CHECK(contact_at(world, 0).model.force_newton.norm() == 0);
     if (is_rigid) CHECK_FALSE(has_mobile(world));
-    CHECK(step_world(world, hand_after({1, 1, 1}), local_contact_of(world).model).finite);
+    CHECK(step_world(world, hand_after({1, 1, 1}), contact_at(world, 0).model).finite);
     CHECK((middle_of_residue(world, "resting", name) - now).norm() < (is_rigid ? 1e-12 : 1));
 }
 
@@ -142,14 +142,14 @@ TEST_CASE("what is in hand goes back to where it was at the start, whatever was 
     const std::string what = GENERATE("resting", "resting:3 CB");
     World world = is_rigid ? load_rigid() : load_two();
     const std::vector<Vec3> start = world.resource<AtomTable>().positions;
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     TakeEdit{what}.apply(world, 0);
-    ContactModel felt = local_contact_of(world).model;
+    ContactModel felt = contact_at(world, 0).model;
     for (int i = 1; i <= 40; ++i) felt = test::step_once(world, hand_after({0, 0.05 * i, 0}), felt);
     const AtomRange own = held_range(world, hand);
     const Vec3 others = world.resource<AtomTable>().positions[own.first == 0 ? own.count : 0];
     REQUIRE((world.resource<AtomTable>().positions[own.first] - start[own.first]).norm() > 0.1);
-    const std::uint32_t hold = local_contact_of(world).model.start;
+    const std::uint32_t hold = contact_at(world, 0).model.start;
 
     PutBackEdit{}.apply(world, 0);
 
@@ -157,24 +157,24 @@ TEST_CASE("what is in hand goes back to where it was at the start, whatever was 
     for (std::uint32_t i = own.first; i < own.first + own.count; ++i)
         CHECK((now[i] - start[i]).norm() < 1e-9);
     CHECK(now[own.first == 0 ? own.count : 0] == others);  // stays where it is
-    CHECK(local_contact_of(world).model.start != hold);    // the servo takes hold anew
+    CHECK(contact_at(world, 0).model.start != hold);       // the servo takes hold anew
     // The hand has it still, without a pull, and leads it from there.
     REQUIRE(world.find<Grip>(hand) != nullptr);
     const bool is_whole = what == "resting";
-    if (!is_whole) CHECK(local_contact_of(world).model.force_newton.norm() < 1e-13);
+    if (!is_whole) CHECK(contact_at(world, 0).model.force_newton.norm() < 1e-13);
     const Vec3 place = held_place(world, hand);
-    (void)test::step_once(world, hand_after({0.1, 2, 0}), local_contact_of(world).model);
+    (void)test::step_once(world, hand_after({0.1, 2, 0}), contact_at(world, 0).model);
     CHECK((held_place(world, hand) - place - Vec3(0.1, 0, 0)).norm() < 1e-9);
 }
 
 TEST_CASE("nothing goes back onto what is there now, or out of another hand",
           "[simulation][edit]") {
     World world = load_waters();
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     const AtomRange own = held_range(world, hand);
     const Vec3 start = world.resource<AtomTable>().positions[own.first];
     const Vec3 by(8, 0, 0);
-    (void)test::step_once(world, hand_after(by), local_contact_of(world).model);
+    (void)test::step_once(world, hand_after(by), contact_at(world, 0).model);
     AddEdit add{"TIP3", "", "w2", {}};
     std::ranges::copy(start, add.at_angstrom.begin());
     add.apply(world, 0);
@@ -230,7 +230,7 @@ TEST_CASE("after adding and removing a molecule the world is what it was, to the
     }));
     INFO(row.file << " with a copy of '" << row.copy_of << "' or " << row.structure);
     World world = load_world(read_scene(row.file, row.settings));
-    (void)test::step_once(world, hand_after({-0.2, 0, 0}), local_contact_of(world).model);
+    (void)test::step_once(world, hand_after({-0.2, 0, 0}), contact_at(world, 0).model);
     // An edit of what moves begins mechanics anew, from where everything is.
     MobilityEdit{first_molecule(world), {}, {}}.apply(world, 0);
     const std::string before = world_bytes(world);
@@ -256,7 +256,7 @@ TEST_CASE("after adding and removing a molecule the world is what it was, to the
     for (World* const each : {&world, &never}) {
         for (int i = 0; i < 3; ++i)
             (void)test::step_once(*each, hand_after({-0.3, 0.1 * i, 0}),
-                                  local_contact_of(*each).model);
+                                  contact_at(*each, 0).model);
     }
     CHECK((world_bytes(world) == world_bytes(never)));
 }
@@ -274,7 +274,7 @@ TEST_CASE("a water that is added has the shape of its parameters", "[simulation]
     CHECK(std::acos(h1.normalized().dot(h2.normalized())) * 180 / 3.14159265358979 ==
           Approx(104.52));
     // It is felt: the force is the sum of two waters'.
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     Vec3 sum = Vec3::Zero();
     for (const char* const name : {"fixed", "w2"}) {
         const AtomRange other = world.find<Molecule>(molecule_called(world, name))->atoms;
@@ -326,11 +326,11 @@ TEST_CASE("what is added from files is what a scene with that molecule has", "[s
               whole.resource<BondedTerms>().topology->dihedrals.size());
     }
     // What is in hand feels it.
-    CHECK(grip_of(world, first_hand(world)).molecule == held);
-    const Vec3 force = evaluate_pair_field(held_points(world, first_hand(world)),
+    CHECK(grip_of(world, hand_at(world, 0)).molecule == held);
+    const Vec3 force = evaluate_pair_field(held_points(world, hand_at(world, 0)),
                                            points_of(now, added), pair_rule(world))
                            .force;
-    CHECK((field_on_held(world, first_hand(world)).force - force).norm() < 1e-12 * force.norm());
+    CHECK((field_on_held(world, hand_at(world, 0)).force - force).norm() < 1e-12 * force.norm());
 }
 
 TEST_CASE("what files lack is refused by name, and nothing changes", "[simulation][edit][errors]") {
@@ -455,7 +455,7 @@ TEST_CASE("undo and redo lead back through random edits and moves, to the byte",
     const auto draw = [&](unsigned n) { return random() % n; };
     const auto move = [&] {
         (void)test::step_once(world, hand_after({0.01 * draw(10), 0.01 * draw(10), 0}),
-                              local_contact_of(world).model);
+                              contact_at(world, 0).model);
     };
     const auto any_edit = [&]() -> EditAction {
         const std::string who = draw(2) == 0 ? first : second;
@@ -535,16 +535,16 @@ TEST_CASE("undo takes back a grip from taking hold to letting go", "[simulation]
     const std::string before = world_bytes(world);
     history.apply(world, edit_of(TakeEdit{"resting:2"}));
     for (int i = 1; i <= 5; ++i)
-        (void)test::step_once(world, hand_after({0, 0.1 * i, 0}), local_contact_of(world).model);
+        (void)test::step_once(world, hand_after({0, 0.1 * i, 0}), contact_at(world, 0).model);
     history.apply(world, edit_of(LetGoEdit{}));
     const std::string after = world_bytes(world);
 
     history.apply(world, edit_of(UndoEdit{}));
     CHECK(world_bytes(world) == before);
     // The hand stays where its device is: what it holds stays where it is.
-    const Vec3 place = held_place(world, first_hand(world));
-    (void)test::step_once(world, hand_after({0, 0.5, 0}), local_contact_of(world).model);
-    CHECK((held_place(world, first_hand(world)) - place).norm() < 1e-12);
+    const Vec3 place = held_place(world, hand_at(world, 0));
+    (void)test::step_once(world, hand_after({0, 0.5, 0}), contact_at(world, 0).model);
+    CHECK((held_place(world, hand_at(world, 0)) - place).norm() < 1e-12);
     history.apply(world, edit_of(RedoEdit{}));
     CHECK(world_bytes(world) == after);
 }
@@ -554,7 +554,7 @@ TEST_CASE("what a scene began with is let go, and that is undone", "[simulation]
     UndoHistory history;
     const std::string before = world_bytes(world);
     history.apply(world, edit_of(LetGoEdit{}));
-    CHECK(world.find<Grip>(first_hand(world)) == nullptr);
+    CHECK(world.find<Grip>(hand_at(world, 0)) == nullptr);
     history.apply(world, edit_of(UndoEdit{}));
     CHECK(world_bytes(world) == before);
 
@@ -599,25 +599,25 @@ TEST_CASE("a reset is the scene as its file has it, and can be undone", "[simula
     World world = is_mobile ? load_two() : load_waters();
     const std::string name = is_mobile ? "resting" : "fixed";
     const std::string start = world_bytes(world);
-    const CouplingMode mode = world.resource<Coupling>().description.mode;
+    const CouplingMode mode = coupling_of(world, hand_at(world, 0)).description.mode;
     UndoHistory history;
     history.apply(world, edit_of(AddEdit{"", name, "another", {30, 0, 0}}));
     history.apply(world, edit_of(TakeEdit{"another"}));
     history.apply(world, edit_of(CouplingEdit{{"mode=3"}}));
-    (void)test::step_once(world, hand_after({0.3, 0.2, 0}), local_contact_of(world).model);
+    (void)test::step_once(world, hand_after({0.3, 0.2, 0}), contact_at(world, 0).model);
     const std::string changed = world_bytes(world);
-    const std::uint32_t last = local_contact_of(world).model.start;
+    const std::uint32_t last = contact_at(world, 0).model.start;
 
     history.apply(world, edit_of(ResetEdit{}));
 
     CHECK(world_bytes(world) == start);
-    CHECK(world.resource<Coupling>().description.mode == mode);
+    CHECK(coupling_of(world, hand_at(world, 0)).description.mode == mode);
     // Time goes on, and the hand, which takes hold anew where its device is.
     CHECK(world.resource<Clock>().steps == 1);
-    CHECK(local_contact_of(world).model.start > last);
-    const Vec3 place = held_place(world, first_hand(world));
-    (void)test::step_once(world, hand_after({0.3, 0.2, 0}), local_contact_of(world).model);
-    CHECK((held_place(world, first_hand(world)) - place).norm() < 1e-12);
+    CHECK(contact_at(world, 0).model.start > last);
+    const Vec3 place = held_place(world, hand_at(world, 0));
+    (void)test::step_once(world, hand_after({0.3, 0.2, 0}), contact_at(world, 0).model);
+    CHECK((held_place(world, hand_at(world, 0)) - place).norm() < 1e-12);
     history.apply(world, edit_of(UndoEdit{}));
     CHECK(world_bytes(world) == changed);
     history.apply(world, edit_of(RedoEdit{}));
@@ -661,7 +661,7 @@ TEST_CASE(
     const bool is_adaptive = GENERATE(false, true);
     world.write<MechanicsSettings>().statics.method =
         is_adaptive ? RelaxMethod::QuasiStatic : RelaxMethod::SecondOrder;
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     MobilityEdit{"fixed", Motion::Free, {}}.apply(world, 0);
     REQUIRE(grip_of(world, hand).freedom == 6);
     REQUIRE(grip_of(world, hand).base >= 0);
@@ -674,9 +674,9 @@ TEST_CASE(
     pose.molecule->place_angstrom += Vec3(0.2, -0.1, 0.3);
     const Quat turn(Eigen::AngleAxisd(0.4, Vec3(1, 2, -1).normalized()));
     pose.molecule->orientation = turn * start.orientation;
-    pose.start = local_contact_of(world).model.start;
+    pose.start = contact_at(world, 0).model.start;
 
-    REQUIRE(step_world(world, pose, local_contact_of(world).model).finite);
+    REQUIRE(step_world(world, pose, contact_at(world, 0).model).finite);
 
     const auto is_turned = [&] {
         const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
@@ -695,7 +695,7 @@ TEST_CASE(
                                      .k = std::numeric_limits<double>::quiet_NaN()});
     pose.molecule->place_angstrom += Vec3(0.5, 0.7, 0.1);
     pose.molecule->orientation = turn * pose.molecule->orientation;
-    CHECK_FALSE(step_world(world, pose, local_contact_of(world).model).finite);
+    CHECK_FALSE(step_world(world, pose, contact_at(world, 0).model).finite);
     CHECK(grip_of(world, hand).pose.place_angstrom == kept.place_angstrom);
     CHECK(grip_of(world, hand).pose.orientation.coeffs() == kept.orientation.coeffs());
     CHECK(world.resource<TorsionState>()
@@ -712,7 +712,7 @@ TEST_CASE("a restraint pulls at both ends, and marks measure", "[simulation][edi
         middle_of_residue(world, "held", "2 CA") - middle_of_residue(world, "resting", "2 CA");
     PinEdit{{"resting:2 CA", "held:2 CA"}}.apply(world, 0);
     RestraintEdit{{"held:2 CA", "resting:2 CA"}, {}, 50, apart.norm() - 1}.apply(world, 0);
-    ContactModel felt = local_contact_of(world).model;
+    ContactModel felt = contact_at(world, 0).model;
     for (int i = 0; i < 60; ++i) felt = test::step_once(world, {}, felt);
     double distance = 0;
     world.each<Mark>([&](Entity, const Mark& mark) { distance = mark.value; });

@@ -58,7 +58,7 @@ void check_against_double(const World& world, Entity hand) {
 TEST_CASE("fast pairs on TL-3 are those in double, in contact, through atoms and far away",
           "[simulation][hiv][fast-pairs]") {
     World world = load_world(hiv(GENERATE("scene.toml", "charged/scene.toml", "surface.toml")));
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     REQUIRE(has_fast_pairs(world, hand));
     const MoleculePose start = grip_of(world, hand).pose;
     std::mt19937 random(5);
@@ -96,14 +96,14 @@ TEST_CASE("a step says what fast pairs say, or those in double where the scene w
         GENERATE(0, 1, 2),
         hiv("scene.toml",
             {is_fast ? "statics.pairs=fast" : "statics.pairs=double", "coupling.mode=" + mode})));
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     HandPose pose;
     pose.molecule = grip_of(world, hand).pose;
     pose.molecule->place_angstrom += Vec3(0.1, -0.05, 0.08);
-    REQUIRE(step_world(world, pose, local_contact_of(world).model).finite);
+    REQUIRE(step_world(world, pose, contact_at(world, 0).model).finite);
 
     REQUIRE(has_fast_pairs(world, hand) == is_fast);
-    const ContactModel& model = local_contact_of(world).model;
+    const ContactModel& model = contact_at(world, 0).model;
     const FieldSum expected =
         is_fast ? fast_field_on_held(world, hand) : field_on_held(world, hand);
     const Vec3 force = expected.force * units::newton_per_kcal_per_mol_angstrom;
@@ -145,7 +145,7 @@ TEST_CASE("two hands with rigid molecules in them have fast pairs, before and af
 
 TEST_CASE("few pairs are in double, whatever the scene says", "[simulation][fast-pairs]") {
     const World world = load_world(test::water_scene({"statics.pairs=fast"}));
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
 
     CHECK_FALSE(has_fast_pairs(world, hand));
     CHECK(fast_field_on_held(world, hand).force == field_on_held(world, hand).force);

@@ -89,10 +89,10 @@ HandPose hand_at(const Vec3& angstrom) {
 }
 
 std::size_t reference_of(const World& world) {
-    return world.find<Molecule>(grip_of(world, first_hand(world)).molecule)->reference_atom;
+    return world.find<Molecule>(grip_of(world, hand_at(world, 0)).molecule)->reference_atom;
 }
 
-Vec3 place_of(const World& world) { return grip_of(world, first_hand(world)).pose.place_angstrom; }
+Vec3 place_of(const World& world) { return grip_of(world, hand_at(world, 0)).pose.place_angstrom; }
 
 const std::vector<std::string> methods{"quasi-static", "second-order"};
 const std::vector<std::string> by_spring{"molecules.held.motion=free", "grab.atom=\"4 CB\"",
@@ -116,10 +116,10 @@ TEST_CASE("flexible molecules are at rest when the scene begins", "[simulation][
     CHECK(world.resource<StartReport>().joints_at_rest.value().energy_after <
           world.resource<StartReport>().joints_at_rest.value().energy_before);
     CHECK(world.resource<AtomTable>().positions == world.resource<TorsionState>().positions);
-    CHECK(held_place(world, first_hand(world)) ==
+    CHECK(held_place(world, hand_at(world, 0)) ==
           world.resource<AtomTable>().positions[reference_of(world)]);
     // The hand's own molecule came to rest as well; then the hand took its base.
-    CHECK(local_contact_of(world).model.force_newton.norm() < 50e-12);
+    CHECK(contact_at(world, 0).model.force_newton.norm() < 50e-12);
 }
 
 TEST_CASE("the system of a scene has its atoms in the order of the table, and all terms",
@@ -150,11 +150,11 @@ TEST_CASE("without joints to turn and bases to move a scene stays rigid",
 TEST_CASE("while the hand rests the energy falls with every step", "[simulation][flexible]") {
     World world =
         load_peptides({"statics.method=quasi-static", "hand.start_offset_angstrom=[-1.5, 0, 0]"});
-    ContactModel felt = local_contact_of(world).model;
+    ContactModel felt = contact_at(world, 0).model;
     double energy = world.resource<TorsionState>().energy(), fallen = 0;
 
     for (int i = 0; i < 25; ++i) {
-        const Vec3 held = held_place(world, first_hand(world));
+        const Vec3 held = held_place(world, hand_at(world, 0));
         const StepReport& report = step_world(world, {}, felt);
         REQUIRE(report.relaxed);
         const RelaxStepReport& relaxed = *report.relaxed;
@@ -166,10 +166,10 @@ TEST_CASE("while the hand rests the energy falls with every step", "[simulation]
         CHECK(world.resource<TorsionState>().energy() - energy ==
               Approx(relaxed.hand_work + relaxed.energy_change).margin(1e-9));
         CHECK(relaxed.evaluations > 0);
-        CHECK((held_place(world, first_hand(world)) - held).norm() < 1e-12);
+        CHECK((held_place(world, hand_at(world, 0)) - held).norm() < 1e-12);
         energy = world.resource<TorsionState>().energy();
         fallen -= relaxed.energy_change;
-        felt = local_contact_of(world).model;
+        felt = contact_at(world, 0).model;
     }
     CHECK(fallen > 0.01);
 }
@@ -179,7 +179,7 @@ TEST_CASE("work of the hand and what is given up add to the change of energy",
     std::vector<std::string> settings{"statics.method=quasi-static"};
     if (GENERATE(false, true)) settings.insert(settings.end(), by_spring.begin(), by_spring.end());
     World world = load_peptides(settings);
-    ContactModel felt = local_contact_of(world).model;
+    ContactModel felt = contact_at(world, 0).model;
     const double start = world.resource<TorsionState>().energy();
     double sum = 0;
 
@@ -188,7 +188,7 @@ TEST_CASE("work of the hand and what is given up add to the change of energy",
         CHECK(report.relaxed->energy_change <= 0);
         sum += report.relaxed->hand_work + report.relaxed->energy_change;
         CHECK(world.resource<TorsionState>().energy() == Approx(start + sum).margin(1e-8));
-        felt = local_contact_of(world).model;
+        felt = contact_at(world, 0).model;
     }
     CHECK(std::abs(sum) > 0.1);
 }
@@ -196,10 +196,10 @@ TEST_CASE("work of the hand and what is given up add to the change of energy",
 TEST_CASE("what the hand moves is the base, and nobody else", "[simulation][flexible]") {
     World world = load_peptides();
     const std::vector<Vec3> before = world.resource<AtomTable>().positions;
-    const Vec3 place = place_of(world), held = held_place(world, first_hand(world));
+    const Vec3 place = place_of(world), held = held_place(world, hand_at(world, 0));
     const Vec3 by(-0.2, 0.1, 0.05);
 
-    const AtomRange in_hand = held_range(world, first_hand(world));
+    const AtomRange in_hand = held_range(world, hand_at(world, 0));
     REQUIRE(in_hand.count == peptide_atoms);
     move_held(world, by);
     for (std::size_t i = 0; i < before.size(); ++i) {
@@ -208,12 +208,12 @@ TEST_CASE("what the hand moves is the base, and nobody else", "[simulation][flex
     }
     move_held(world, -by);
 
-    const StepReport& report = step_world(world, hand_at(by), local_contact_of(world).model);
+    const StepReport& report = step_world(world, hand_at(by), contact_at(world, 0).model);
     CHECK(report.moves.front().angstrom == Approx(by.norm()));
     CHECK((place_of(world) - place - by).norm() < 1e-12);
-    CHECK((held_place(world, first_hand(world)) - held - by).norm() < 1e-12);
+    CHECK((held_place(world, hand_at(world, 0)) - held - by).norm() < 1e-12);
     // The base of the other one is fixed: so is its reference atom.
-    const Grip& grip = grip_of(world, first_hand(world));
+    const Grip& grip = grip_of(world, hand_at(world, 0));
     const std::size_t fixed = world.find<Molecule>(grip.measured_from)->reference_atom;
     CHECK((world.resource<AtomTable>().positions[fixed] - before[fixed]).norm() < 1e-12);
 }
@@ -242,9 +242,9 @@ TEST_CASE("wherever what is held stands in the table, each atom feels the same",
         }
     }
     CHECK(found.energy() == Approx(expected.energy()).epsilon(1e-12));
-    const Vec6 pull = find_pull_on_held(last, first_hand(last));
+    const Vec6 pull = find_pull_on_held(last, hand_at(last, 0));
     REQUIRE(pull.tail<3>().norm() > 1e-3 * largest);
-    CHECK((find_pull_on_held(first, first_hand(first)) - pull).norm() < 1e-9 * pull.norm());
+    CHECK((find_pull_on_held(first, hand_at(first, 0)) - pull).norm() < 1e-9 * pull.norm());
 }
 
 TEST_CASE("a molecule that turns by itself does so about its reference atom",
@@ -256,17 +256,17 @@ TEST_CASE("a molecule that turns by itself does so about its reference atom",
          "molecules.held.shape=rigid", "molecules.resting.shape=rigid", "statics.steps=20"});
     CHECK(world.resource<StartReport>().joints == 0);
     REQUIRE(model_of(world).coordinates == 3);
-    ContactModel felt = local_contact_of(world).model;
+    ContactModel felt = contact_at(world, 0).model;
     CHECK(felt.active_freedom == 6);
 
     // The other end of the molecule comes too close, and gives way.
     for (int i = 1; i <= 10; ++i) {
         const StepReport& report = step_world(world, hand_at({-0.3 * i, 0, 0}), felt);
-        CHECK((held_place(world, first_hand(world)) - grip_of(world, first_hand(world)).anchor -
+        CHECK((held_place(world, hand_at(world, 0)) - grip_of(world, hand_at(world, 0)).anchor -
                place_of(world))
                   .norm() < 1e-12);
         CHECK(report.relaxed->energy_change <= 0);
-        felt = local_contact_of(world).model;
+        felt = contact_at(world, 0).model;
     }
     CHECK(Eigen::AngleAxisd(world.resource<TorsionState>().turns[held_part(world).base]).angle() >
           0.01);
@@ -292,10 +292,10 @@ TEST_CASE("a spring pulls at the hand with k times its stretch", "[simulation][f
         }
         return Vec3(sum / mass);
     };
-    CHECK(spring_of(world, first_hand(world))->atoms.size() == (is_residue ? 11 : 1));
-    CHECK((held_place(world, first_hand(world)) - tethered()).norm() < 1e-12);
+    CHECK(spring_of(world, hand_at(world, 0))->atoms.size() == (is_residue ? 11 : 1));
+    CHECK((held_place(world, hand_at(world, 0)) - tethered()).norm() < 1e-12);
     const Vec3 start = tethered();
-    ContactModel felt = local_contact_of(world).model;
+    ContactModel felt = contact_at(world, 0).model;
     CHECK(felt.force_newton.norm() < 1e-20);
     CHECK(felt.active_freedom == 3 + static_cast<int>(world.resource<StartReport>().joints) + 6);
 
@@ -342,7 +342,7 @@ TEST_CASE("anchors pull at the hand from where the file has their atoms",
         }
         pull += 0.03 * (then - now) / mass;
     }
-    const Vec3 felt = local_contact_of(world).model.force_newton;
+    const Vec3 felt = contact_at(world, 0).model.force_newton;
     CHECK(pull.norm() > 1);
     CHECK((felt - pull * units::newton_per_kcal_per_mol_angstrom).norm() < 1e-9 * felt.norm());
 }
@@ -378,7 +378,7 @@ TEST_CASE("anchors that are not there are refused", "[simulation][flexible][erro
     // Of what does not move they do nothing.
     const auto felt = [](std::vector<std::string> settings) {
         settings.emplace_back("molecules.resting.shape=rigid");
-        return local_contact_of(load_peptides(settings)).model.force_newton;
+        return contact_at(load_peptides(settings), 0).model.force_newton;
     };
     CHECK(felt({"molecules.resting.anchors=[\"2 CA\"]"}) == felt({}));
 }
@@ -448,7 +448,7 @@ TEST_CASE("runs repeat to the bit", "[simulation][flexible]") {
     const std::string pairs = GENERATE("double", "fast");
     const auto run = [&] {
         World world = load_peptides({"statics.pairs=" + pairs, "statics.method=second-order"});
-        ContactModel felt = local_contact_of(world).model;
+        ContactModel felt = contact_at(world, 0).model;
         for (int i = 1; i <= 10; ++i) {
             felt = test::step_once(world, hand_at({-0.1 * i, 0, 0}), felt);
         }
@@ -470,7 +470,7 @@ TEST_CASE("residues of two molecules with the same names are not one, where few 
         BondedTerms& terms = world.write<BondedTerms>();
         Connectivity connectivity = *terms.connectivity;
         if (has_same_names) {
-            const AtomRange other = held_range(world, first_hand(world));
+            const AtomRange other = held_range(world, hand_at(world, 0));
             REQUIRE(connectivity.names.front().number == "1");
             const AtomName last = connectivity.names[other.first - 1];
             for (std::uint32_t i = other.first; i < other.first + other.count; ++i) {
@@ -498,24 +498,24 @@ TEST_CASE("a hand that is nowhere changes nothing", "[simulation][flexible]") {
     std::vector<std::string> settings;
     if (GENERATE(false, true)) settings = by_spring;
     World world = load_peptides(settings);
-    ContactModel felt = local_contact_of(world).model;
+    ContactModel felt = contact_at(world, 0).model;
     felt = test::step_once(world, hand_at({-0.1, 0, 0}), felt);
     const TorsionState before = world.resource<TorsionState>();
     const std::vector<Vec3> positions = world.resource<AtomTable>().positions;
-    const Vec3 place = place_of(world), held = held_place(world, first_hand(world));
+    const Vec3 place = place_of(world), held = held_place(world, hand_at(world, 0));
 
     const StepReport report =
         step_world(world, hand_at({0, std::numeric_limits<double>::quiet_NaN(), 0}), felt);
 
     CHECK_FALSE(report.finite);
-    CHECK(local_contact_of(world).model.force_newton == felt.force_newton);
+    CHECK(contact_at(world, 0).model.force_newton == felt.force_newton);
     CHECK(world.resource<AtomTable>().positions == positions);
     CHECK(world.resource<TorsionState>().positions == before.positions);
     CHECK(world.resource<TorsionState>().angles == before.angles);
-    CHECK(held_place(world, first_hand(world)) == held);
+    CHECK(held_place(world, hand_at(world, 0)) == held);
     CHECK(place_of(world) == place);
     // And it can go on.
-    take_hold(world, first_hand(world), hand_at({0, 0, 0}));
+    take_hold(world, hand_at(world, 0), hand_at({0, 0, 0}));
     CHECK(step_world(world, hand_at({0.1, 0, 0}), felt).finite);
 }
 
@@ -524,14 +524,14 @@ TEST_CASE("a step that is not finite leaves everything as it was", "[simulation]
     if (GENERATE(false, true)) settings.emplace_back("statics.active=4");
     World world = load_peptides(settings);
     const ContactModel felt =
-        test::step_once(world, hand_at({-0.1, 0, 0}), local_contact_of(world).model);
+        test::step_once(world, hand_at({-0.1, 0, 0}), contact_at(world, 0).model);
     const TorsionState before = world.resource<TorsionState>();
     const std::vector<Vec3> positions = world.resource<AtomTable>().positions;
     const Vec3 place = place_of(world);
 
-    world.write<Spring>(first_hand(world))->k = std::numeric_limits<double>::quiet_NaN();
+    world.write<Spring>(hand_at(world, 0))->k = std::numeric_limits<double>::quiet_NaN();
     CHECK_FALSE(step_world(world, hand_at({-0.2, 0, 0}), felt).finite);
-    world.write<Spring>(first_hand(world))->k = before.springs.front().k;
+    world.write<Spring>(hand_at(world, 0))->k = before.springs.front().k;
 
     const TorsionState state = world.resource<TorsionState>();
     CHECK(state.angles == before.angles);
@@ -540,7 +540,7 @@ TEST_CASE("a step that is not finite leaves everything as it was", "[simulation]
     CHECK(find_largest_move(state.positions, before.positions) < 1e-9);
     CHECK(find_largest_move(world.resource<AtomTable>().positions, positions) < 1e-9);
     CHECK((place_of(world) - place).norm() < 1e-12);
-    CHECK(local_contact_of(world).model.force_newton == felt.force_newton);
+    CHECK(contact_at(world, 0).model.force_newton == felt.force_newton);
     CHECK(step_world(world, hand_at({-0.3, 0, 0}), felt).finite);
     CHECK(std::isfinite(world.resource<TorsionState>().energy()));
 }
@@ -642,8 +642,8 @@ TEST_CASE("few active joints leave the force that is felt at first as it is",
     const World all = load_peptides();
     const World few = load_peptides({"statics.active=2"});
 
-    const Vec6 expected = find_pull_on_held(all, first_hand(all)),
-               found = find_pull_on_held(few, first_hand(few));
+    const Vec6 expected = find_pull_on_held(all, hand_at(all, 0)),
+               found = find_pull_on_held(few, hand_at(few, 0));
 
     CHECK(find_active_freedom(few) <= 2);
     CHECK((found - expected).norm() < 1e-4 * expected.norm());
@@ -652,8 +652,8 @@ TEST_CASE("few active joints leave the force that is felt at first as it is",
 TEST_CASE("a joint counts the less the more atoms it moves, and the farther it is from the hand",
           "[simulation][flexible]") {
     World world = load_peptides({"statics.active=8", "statics.choose_every=1"});
-    (void)step_world(world, hand_at(Vec3(0.6, 0, 0)), local_contact_of(world).model);
-    (void)step_world(world, hand_at(Vec3(1.2, 0, 0)), local_contact_of(world).model);
+    (void)step_world(world, hand_at(Vec3(0.6, 0, 0)), contact_at(world, 0).model);
+    (void)step_world(world, hand_at(Vec3(1.2, 0, 0)), contact_at(world, 0).model);
     const std::vector<double>& factors = find_solver<PaperStep>(world)->settings.factors;
     const std::vector<Body>& bodies = model_of(world).tree.bodies.bodies;
     const std::vector<std::array<std::uint32_t, 2>> bonds = connectivity_of(read_peptides()).bonds;

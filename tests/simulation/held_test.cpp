@@ -15,7 +15,7 @@ TEST_CASE("around a hand is all but what it holds, wherever that stands in the t
           "[simulation][held]") {
     const std::size_t number = GENERATE(0, 1, 2);
     const World world = test::three_waters(number, {0, 4, 1});
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
 
     const AtomRange held = held_range(world, hand);
     const std::vector<std::uint32_t> around = test::atoms_around(world);
@@ -33,7 +33,7 @@ TEST_CASE("around a hand is all but what it holds, wherever that stands in the t
 
 TEST_CASE("a hand that holds nothing has nothing, and all is around it", "[simulation][held]") {
     World world = test::three_waters(1, {0, 4, 1});
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     world.remove<Grip>(hand);
 
     CHECK(held_range(world, hand).count == 0);
@@ -46,7 +46,7 @@ TEST_CASE("a hand that holds nothing has nothing, and all is around it", "[simul
     CHECK(find_force_on_held(world, hand).norm() == 0);
     CHECK(find_pull_on_held(world, hand).norm() == 0);
     // Nor has nobody.
-    CHECK(first_hand(World()) == Entity{});
+    CHECK(hand_at(World(), 0) == Entity{});
     CHECK(held_range(world, Entity{}).count == 0);
     CHECK(find_force_on_held(world, Entity{}).norm() == 0);
 }
@@ -58,7 +58,7 @@ TEST_CASE("what is held feels all other molecules, wherever it stands in the tab
     move_grabbed(world, 2.9);
     const AtomTable& atoms = world.resource<AtomTable>();
 
-    const FieldSum all = field_on_held(world, first_hand(world));
+    const FieldSum all = field_on_held(world, hand_at(world, 0));
 
     const auto field_of = [&](const char* name) {
         return evaluate_pair_field(points_of(atoms, test::range_called(world, "moved")),

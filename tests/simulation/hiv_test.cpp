@@ -57,7 +57,7 @@ struct Shipped {
     explicit Shipped(const SceneDescription& scene) : world(load_world(scene)) {
         const std::string text = read_text_file(test::in_project("scenes/hiv/system.crd"));
         double mass = 0;
-        const AtomRange held = held_range(world, first_hand(world));
+        const AtomRange held = held_range(world, hand_at(world, 0));
         for (const std::string_view line : split_lines(text)) {
             const std::vector<std::string_view> words = split_words(line);
             if (words.size() != 10 || words[7] != "TL3C") continue;
@@ -70,9 +70,9 @@ struct Shipped {
     }
 
     FieldSum field(const std::vector<Vec3>& moved) const {
-        FieldPoints group = held_points(world, first_hand(world));
+        FieldPoints group = held_points(world, hand_at(world, 0));
         group.positions = moved;
-        return field_on(world, first_hand(world), group);
+        return field_on(world, hand_at(world, 0), group);
     }
 };
 
@@ -82,7 +82,7 @@ TEST_CASE("energy, force and torque on TL-3 are those of an independent sum", "[
     const std::size_t number = GENERATE(0, 1, 2);
     const Shipped shipped(test::with_held_at(number, hiv_scene()));
     REQUIRE(shipped.places.size() == 130);
-    REQUIRE(count_environment(shipped.world, first_hand(shipped.world)) == 3145);
+    REQUIRE(count_environment(shipped.world, hand_at(shipped.world, 0)) == 3145);
     const std::string text = read_text_file(test::test_data("hiv_poses.csv"));
     const std::vector<std::string_view> rows = split_lines(text);
     REQUIRE(rows.size() == 5);
@@ -117,7 +117,7 @@ TEST_CASE("loading brings TL-3 to rest in all six degrees of freedom", "[simulat
     CHECK(report.force * pN < 20);
     CHECK(report.energy_after < report.energy_before);
     CHECK(report.displacement < 0.5);
-    const ContactModel contact = build_local_contact(world, first_hand(world), {}).model;
+    const ContactModel contact = build_local_contact(world, hand_at(world, 0), {}).model;
     CHECK(contact.force_newton.norm() < 20e-12);
     CHECK(contact.torque_newton_metre.norm() < 20e-12 * 10e-10);  // 20 pN at its ends
     CHECK(contact.active_freedom == 3);
@@ -136,17 +136,17 @@ TEST_CASE("TL-3 comes to the same rest wherever it stands in the table", "[simul
     const std::size_t number = GENERATE(0, 1);
     const World last = load_world(hiv_scene()),
                 world = load_world(test::with_held_at(number, hiv_scene()));
-    const std::span<const Vec3> expected = held_points(last, first_hand(last)).positions,
-                                found = held_points(world, first_hand(world)).positions;
+    const std::span<const Vec3> expected = held_points(last, hand_at(last, 0)).positions,
+                                found = held_points(world, hand_at(world, 0)).positions;
 
-    REQUIRE(held_range(world, first_hand(world)).first < held_range(last, first_hand(last)).first);
+    REQUIRE(held_range(world, hand_at(world, 0)).first < held_range(last, hand_at(last, 0)).first);
     REQUIRE(found.size() == expected.size());
     for (std::size_t i = 0; i < found.size(); ++i) CHECK((found[i] - expected[i]).norm() < 1e-4);
 }
 
 TEST_CASE("a rigid body finds back to its rest from a little beside it", "[simulation][hiv]") {
     const World world = load_world(hiv_scene());
-    const FieldPoints group = held_points(world, first_hand(world));
+    const FieldPoints group = held_points(world, hand_at(world, 0));
     std::vector<Vec3> places(group.positions.begin(), group.positions.end());
     const std::vector<Vec3> rest = places;
     const Vec3 centre = places[0];
@@ -164,18 +164,17 @@ TEST_CASE("a rigid body finds back to its rest from a little beside it", "[simul
 TEST_CASE("the hand moves TL-3 in space without turning it", "[simulation][hiv]") {
     World world = load_world(hiv_scene({"A_d=1e9"}));
     const std::vector<Vec3> before = world.resource<AtomTable>().positions;
-    ContactModel felt = build_local_contact(world, first_hand(world), {}).model;
+    ContactModel felt = build_local_contact(world, hand_at(world, 0), {}).model;
     const Vec3 rest = felt.molecule.place_angstrom;
     const double energy = felt.potential_kcal_per_mol;
 
     // 10 mm / 1e9 = 0.1 Å.
     const Vec3 travel(0.010, -0.005, 0.002);
-    const AtomRange held = held_range(world, first_hand(world));
+    const AtomRange held = held_range(world, hand_at(world, 0));
     const StepReport& report = step_world(world, {0, travel}, felt);
 
     CHECK(report.finite);
-    CHECK((local_contact_of(world).model.molecule.place_angstrom - rest - 10 * travel).norm() <
-          1e-12);
+    CHECK((contact_at(world, 0).model.molecule.place_angstrom - rest - 10 * travel).norm() < 1e-12);
     CHECK(report.moves.front().angstrom == Approx(10 * travel.norm()));
     for (std::size_t i = 0; i < before.size(); ++i) {
         const Vec3 moved = world.resource<AtomTable>().positions[i] - before[i];
@@ -183,20 +182,20 @@ TEST_CASE("the hand moves TL-3 in space without turning it", "[simulation][hiv]"
               1e-12);
     }
     // Whatever way it is moved, it is pushed back.
-    CHECK(local_contact_of(world).model.force_newton.dot(travel) < 0);
-    CHECK(local_contact_of(world).model.potential_kcal_per_mol > energy);
+    CHECK(contact_at(world, 0).model.force_newton.dot(travel) < 0);
+    CHECK(contact_at(world, 0).model.potential_kcal_per_mol > energy);
 }
 
 TEST_CASE("a step is finite wherever the hand pushes TL-3, through the protein too",
           "[simulation][hiv]") {
     World world = load_world(hiv_scene({"A_d=1e9"}));
-    ContactModel felt = build_local_contact(world, first_hand(world), {}).model;
+    ContactModel felt = build_local_contact(world, hand_at(world, 0), {}).model;
 
     for (int step = 0; step < 60; ++step) {
         const double angle = 0.7 * step, far = 0.05 * step;
         const StepReport& report = step_world(
             world, {0, far * Vec3(std::cos(angle), std::sin(angle), std::sin(2 * angle))}, felt);
-        felt = local_contact_of(world).model;
+        felt = contact_at(world, 0).model;
         REQUIRE(report.finite);
         REQUIRE(std::isfinite(felt.potential_kcal_per_mol));
         REQUIRE(std::isfinite(felt.stiffness_N_per_m));
@@ -208,8 +207,8 @@ TEST_CASE("a start beside the place of rest is measured from it", "[simulation][
     const World outside = load_world(hiv_scene({"hand.start_offset_angstrom=[30, 1, -2]"}));
 
     const Vec3 moved =
-        build_local_contact(outside, first_hand(outside), {}).model.molecule.place_angstrom -
-        build_local_contact(inside, first_hand(inside), {}).model.molecule.place_angstrom;
+        build_local_contact(outside, hand_at(outside, 0), {}).model.molecule.place_angstrom -
+        build_local_contact(inside, hand_at(inside, 0), {}).model.molecule.place_angstrom;
 
     CHECK((moved - Vec3(30, 1, -2)).norm() < 1e-12);
     CHECK(grabbed_distance(inside) == 0);

@@ -19,7 +19,7 @@ using Catch::Matchers::Contains;
 namespace {
 
 double distance(const World& world) {
-    return grip_of(world, first_hand(world)).pose.place_angstrom.x();
+    return grip_of(world, hand_at(world, 0)).pose.place_angstrom.x();
 }
 
 // What loading says of a scene whose parameter file lacks the line that begins with `without`.

@@ -29,7 +29,7 @@ using namespace palpa;
 namespace {
 
 LocalContactModel& write_local_contact(World& world) {
-    return world.write<Contact>(first_hand(world))->answer;
+    return world.write<Contact>(hand_at(world, 0))->answer;
 }
 
 constexpr double dimer_distance = 2.6, dimer_step = 0.002;  // Å; the force is steep there
@@ -38,7 +38,7 @@ constexpr double dimer_distance = 2.6, dimer_step = 0.002;  // Å; the force is 
 World dimer() {
     World world = load_world(test::water_scene({"mode=guarded"}));
     move_grabbed(world, dimer_distance);
-    write_local_contact(world) = build_local_contact(world, first_hand(world), {});
+    write_local_contact(world) = build_local_contact(world, hand_at(world, 0), {});
     return world;
 }
 
@@ -49,7 +49,7 @@ void step_in(World& world, double followed) {
         world.write<AtomTable>().positions[i].x() -= followed * dimer_step;
     move_grabbed(world, grabbed_distance(world) - dimer_step);
     REQUIRE((grabbed_place(world) - place).norm() == Approx(dimer_step));
-    update_contact(world, first_hand(world), {});
+    update_contact(world, hand_at(world, 0), {});
 }
 
 double newton_at(const World& world, double at) {
@@ -65,23 +65,22 @@ TEST_CASE("half of the way to what came true is gone in each step", "[simulation
     // 1/2 (1 + share), then halfway on again. Forces bend by less than a hundredth on the way.
     const double share = 1 - followed;
     step_in(world, followed);
-    CHECK(local_contact_of(world).model.prediction_gain == Approx(0.5 + 0.5 * share).margin(0.01));
+    CHECK(contact_at(world, 0).model.prediction_gain == Approx(0.5 + 0.5 * share).margin(0.01));
     step_in(world, followed);
-    CHECK(local_contact_of(world).model.prediction_gain ==
-          Approx(0.25 + 0.75 * share).margin(0.01));
+    CHECK(contact_at(world, 0).model.prediction_gain == Approx(0.25 + 0.75 * share).margin(0.01));
     // Whoever sees that the environment moves does not trust its field far away.
-    CHECK(local_contact_of(world).model.is_compliant == (followed > 0));
+    CHECK(contact_at(world, 0).model.is_compliant == (followed > 0));
 }
 
 TEST_CASE("more than was foretold counts as all, and the opposite as nothing",
           "[simulation][contact]") {
     World world = dimer();
     step_in(world, -2);  // the environment comes towards the molecule
-    CHECK(local_contact_of(world).model.prediction_gain == 1);
+    CHECK(contact_at(world, 0).model.prediction_gain == 1);
 
     world = dimer();
     step_in(world, 3);  // it flees, so the force falls instead of rising
-    CHECK(local_contact_of(world).model.prediction_gain == Approx(0.5));
+    CHECK(contact_at(world, 0).model.prediction_gain == Approx(0.5));
 }
 
 TEST_CASE("what was foretold less than 2 pN of confirms and denies nothing",
@@ -89,15 +88,15 @@ TEST_CASE("what was foretold less than 2 pN of confirms and denies nothing",
     World world = load_world(test::water_scene({"mode=guarded"}));
     const double far = GENERATE(4.0, 12.0);
     move_grabbed(world, far);
-    write_local_contact(world) = build_local_contact(world, first_hand(world), {});
+    write_local_contact(world) = build_local_contact(world, hand_at(world, 0), {});
     write_local_contact(world).model.prediction_gain = 0.6;
     const bool is_foretold = std::abs(newton_at(world, far - 0.2) - newton_at(world, far)) > 2e-12;
     REQUIRE(is_foretold == (far == 4));
 
     move_grabbed(world, far - 0.2);
-    update_contact(world, first_hand(world), {});
+    update_contact(world, hand_at(world, 0), {});
 
-    CHECK(local_contact_of(world).model.prediction_gain ==
+    CHECK(contact_at(world, 0).model.prediction_gain ==
           Approx(is_foretold ? 0.8 : 0.6).margin(1e-3));
 }
 
@@ -109,8 +108,8 @@ TEST_CASE("a contact without atoms keeps the prediction gain", "[simulation][con
 
     step_in(world, 1);
 
-    CHECK(local_contact_of(world).model.prediction_gain == 0.6);
-    CHECK(local_contact_of(world).model.torque_prediction_gain == 0.7);
+    CHECK(contact_at(world, 0).model.prediction_gain == 0.6);
+    CHECK(contact_at(world, 0).model.torque_prediction_gain == 0.7);
 }
 
 TEST_CASE("torques are confirmed by themselves", "[simulation][contact]") {
@@ -126,13 +125,13 @@ TEST_CASE("torques are confirmed by themselves", "[simulation][contact]") {
         Vec3& place = world.write<AtomTable>().positions[i];
         place = pivot + about(followed * turn) * (place - pivot);
     }
-    for (const std::uint32_t i : held_atoms(world, first_hand(world))) {
+    for (const std::uint32_t i : held_atoms(world, hand_at(world, 0))) {
         Vec3& place = world.write<AtomTable>().positions[i];
         place = pivot + about(turn) * (place - pivot);
     }
-    update_contact(world, first_hand(world), {});
+    update_contact(world, hand_at(world, 0), {});
 
-    CHECK(local_contact_of(world).model.torque_prediction_gain ==
+    CHECK(contact_at(world, 0).model.torque_prediction_gain ==
           Approx(1 - 0.5 * followed).margin(0.03));
 }
 
@@ -144,7 +143,7 @@ TEST_CASE("the servo gets the nearest atoms of others, wherever what is held sta
         test::in_project("scenes/hiv"),
         std::vector<std::string>{"mode=guarded", fmt::format("pairs_per_tick={}", own * most)});
     World world = load_world(test::with_held_at(number, scene));
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     const AtomRange held = test::range_called(world, "inhibitor");
     REQUIRE(held.count == own);
     const std::vector<Vec3> before = world.resource<AtomTable>().positions;
@@ -153,7 +152,7 @@ TEST_CASE("the servo gets the nearest atoms of others, wherever what is held sta
     HandPose pose;
     pose.molecule = grip_of(world, hand).pose;
     pose.molecule->place_angstrom.x() += 0.6;
-    REQUIRE(step_world(world, pose, local_contact_of(world).model).finite);
+    REQUIRE(step_world(world, pose, contact_at(world, 0).model).finite);
 
     const std::vector<Vec3>& places = world.resource<AtomTable>().positions;
     REQUIRE((places[held.first] - before[held.first]).norm() > 0.5);
@@ -170,7 +169,7 @@ TEST_CASE("the servo gets the nearest atoms of others, wherever what is held sta
     for (std::size_t i = 0; i < most; ++i) expected.push_back(by_distance[i].second);
     std::ranges::sort(expected);
     CHECK(contact_of(world, hand).near.atoms == expected);
-    const std::vector<Vec3>& frozen = local_contact_of(world).field.frozen.environment.positions;
+    const std::vector<Vec3>& frozen = contact_at(world, 0).field.frozen.environment.positions;
     REQUIRE(frozen.size() == most);
     for (std::size_t i = 0; i < most; ++i) CHECK(frozen[i] == places[expected[i]]);
 }
@@ -182,14 +181,14 @@ TEST_CASE("of few atoms the servo gets all of others, wherever what is held stan
     move_grabbed(world, 2.9);
 
     const auto check_field = [&] {
-        const LocalField field = build_local_contact(world, first_hand(world), {}).field;
+        const LocalField field = build_local_contact(world, hand_at(world, 0), {}).field;
         CHECK(field.frozen.environment.positions.size() == 6);
         CHECK(field.group.front() == grabbed_place(world));
         const Vec3 force = field_on_grabbed(world).force;
         CHECK((field.there.force - force).norm() < 1e-5 * force.norm());
     };
     check_field();
-    update_contact(world, first_hand(world), {});
-    CHECK(contact_of(world, first_hand(world)).near.atoms == test::atoms_around(world));
+    update_contact(world, hand_at(world, 0), {});
+    CHECK(contact_of(world, hand_at(world, 0)).near.atoms == test::atoms_around(world));
     check_field();
 }

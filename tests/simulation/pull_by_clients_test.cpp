@@ -49,7 +49,7 @@ ClientPull pull_at(const World& world, const std::string& name, const Vec3& forc
 
 void step_on(World& world, int steps) {
     for (int i = 0; i < steps; ++i)
-        REQUIRE(step_world(world, HandPose{}, local_contact_of(world).model).finite);
+        REQUIRE(step_world(world, HandPose{}, contact_at(world, 0).model).finite);
 }
 
 }  // namespace
@@ -114,12 +114,12 @@ TEST_CASE("a hand on a spring feels what a client pulls with", "[clients]") {
     restrain(world, 0.001);
     TakeEdit{"free:1"}.apply(world, 0);
     step_on(world, 100);
-    const Vec3 end = held_place(world, first_hand(world));
+    const Vec3 end = held_place(world, hand_at(world, 0));
     world.set_resource(pull_at(world, "free", {0, 3, 0}));
     step_on(world, 600);
-    CHECK(held_place(world, first_hand(world)) == end);
+    CHECK(held_place(world, hand_at(world, 0)) == end);
     const Vec3 felt =
-        local_contact_of(world).model.force_newton / units::newton_per_kcal_per_mol_angstrom;
+        contact_at(world, 0).model.force_newton / units::newton_per_kcal_per_mol_angstrom;
     CHECK(felt.y() == Approx(3).epsilon(0.02));
     CHECK(std::abs(felt.x()) < 0.05);
 }
@@ -171,10 +171,10 @@ TEST_CASE("undo and edits find the springs of hands and restraints in their plac
     const Vec3 pulled = centre_of_water(world, "free");
     UndoHistory history;
     history.apply(world, {0, 0, TakeEdit{"free:1"}, {"test", 1, 0}});
-    REQUIRE(spring_of(world, first_hand(world)));
+    REQUIRE(spring_of(world, hand_at(world, 0)));
     step_on(world, 50);
     CHECK(world.resource<TorsionState>().springs.size() == 2 + 3);
-    CHECK(spring_of(world, first_hand(world))->atoms.size() == 3);
+    CHECK(spring_of(world, hand_at(world, 0))->atoms.size() == 3);
     CHECK((centre_of_water(world, "free") - pulled).norm() < 0.05);
     history.apply(world, {0, 0, UndoEdit{}, {"test", 1, 0}});
     world.set_resource(pull);

@@ -181,7 +181,7 @@ ForceSettings double_with_cutoff() {
 // The servo has put the spring's end so far (Å) from where it was at first.
 void pull(World& world, const Vec3& by) {
     HandPose hand;
-    const Entity first = first_hand(world);
+    const Entity first = hand_at(world, 0);
     hand.molecule = grip_of(world, first).pose;
     hand.molecule->place_angstrom += by;
     hand.start = contact_of(world, first).answer.model.start;
@@ -270,7 +270,7 @@ TEST_CASE("a step by second order in a region is that of the whole model",
 
     const auto step = [&](const TorsionModel& of, const ModelAtoms& numbers) {
         TorsionState state = build_torsion_state(of);
-        ModelSpring spring = *spring_of(world, first_hand(world));
+        ModelSpring spring = *spring_of(world, hand_at(world, 0));
         for (std::uint32_t& atom : spring.atoms) {
             const std::uint32_t in_table = atoms.number_in_table(atom);
             atom = numbers.in_model(in_table).value();
@@ -308,13 +308,13 @@ TEST_CASE("outside of the region nothing moves by a bit, and chains stay closed"
     const bool is_fast = GENERATE(false, true);
     World world = load_flap({is_fast ? "statics.pairs=fast" : "statics.pairs=double"});
     const std::vector<Vec3> before = positions_of(world);
-    const std::vector<std::uint32_t> held = held_atoms(world, first_hand(world));
+    const std::vector<std::uint32_t> held = held_atoms(world, hand_at(world, 0));
     const AtomTable& table = world.resource<AtomTable>();
     for (const std::uint32_t atom : held) {
         REQUIRE(table.names[atom].number == "50");
         REQUIRE(table.names[atom].segment == "B");
     }
-    const AtomsOf residue = held_part_of(world, first_hand(world));
+    const AtomsOf residue = held_part_of(world, hand_at(world, 0));
     const Vec3 start = middle_of(world, residue);
     for (int i = 0; i < 20; ++i) pull(world, Vec3(0, 0.1, 0));
     CHECK((middle_of(world, residue) - start).y() > 0.5);
@@ -397,7 +397,7 @@ TEST_CASE("a region goes with the hand, stays when it lets go, and comes back wh
     REQUIRE(step_world(world, HandPose{}, {}).finite);
     edit(RemoveEdit{"protease_a"});
     CHECK(world.resource<TorsionState>().springs.size() == 1);
-    for (const std::uint32_t atom : held_atoms(world, first_hand(world)))
+    for (const std::uint32_t atom : held_atoms(world, hand_at(world, 0)))
         REQUIRE(world.resource<AtomTable>().names[atom].number == "50");
     pull(world, Vec3(0, 0.1, 0));
     edit(RemoveEdit{"protease_b"});

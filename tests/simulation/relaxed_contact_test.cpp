@@ -83,14 +83,14 @@ TEST_CASE("from contact to contact no direction changes by more than the limit",
 TEST_CASE("between steps of 83 ms the force in a pocket is that of complete following",
           "[simulation][relaxed][hiv]") {
     World world = load_pocket(), every_tick = load_pocket();
-    const MoleculePose start = local_contact_of(world).model.molecule;
+    const MoleculePose start = contact_at(world, 0).model.molecule;
     constexpr double period_s = 0.083, tick_s = 0.00415, angstrom_per_s = 1;
     constexpr int periods = 6, ticks = 20;  // on +x a side chain snaps soon after
     const Vec3 way = Vec3::Unit(GENERATE(0, 1, 2)) * GENERATE(1.0, -1.0);
     const auto place_at = [&](double time_s) { return Vec3(time_s * angstrom_per_s * way); };
     const auto step_to = [&](World& w, double time_s) {
-        (void)test::step_once(w, pose_at(start, place_at(time_s)), local_contact_of(w).model);
-        return local_contact_of(w);
+        (void)test::step_once(w, pose_at(start, place_at(time_s)), contact_at(w, 0).model);
+        return contact_at(w, 0);
     };
 
     step_to(world, 0);

@@ -79,7 +79,7 @@ TEST_CASE("a scene of a remote engine needs no force field", "[simulation][engin
     CHECK(table.mass[0] == Approx(15.999));
     CHECK(table.bonds.size() == 4);  // of water, by distance; the ion has none
     // The hand holds residue 1 where its middle is.
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     const EngineHold& hold = *world.find<EngineHold>(hand);
     CHECK(hold.atoms == std::vector<std::uint32_t>{0, 1, 2});
     const Vec3 middle =
@@ -94,7 +94,7 @@ TEST_CASE("a remote engine's atoms are taken by springs, and nothing else is cha
           "[simulation][engine]") {
     const test::TemporaryFolder folder;
     World world = load(folder.path(), scene_text(""));
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
 
     TakeEdit{"ion"}.apply(world, 0);
     CHECK(world.find<EngineHold>(hand)->atoms == std::vector<std::uint32_t>{6});
@@ -116,7 +116,7 @@ TEST_CASE("an engine's atoms are found by number", "[simulation][engine]") {
     const EngineAtoms& atoms = *find_solver<RemoteEngine>(world)->atoms;
     CHECK(atoms.in_table == std::vector<std::int32_t>{6, 0, 1, 2});
     CHECK(atoms.in_engine == std::vector<std::int32_t>{1, 2, 3, -1, -1, -1, 0});
-    CHECK(world.find<EngineHold>(first_hand(world))->atoms == std::vector<std::uint32_t>{3});
+    CHECK(world.find<EngineHold>(hand_at(world, 0))->atoms == std::vector<std::uint32_t>{3});
     std::ofstream(folder.path() / "sent.ndx") << "[ sent ]\n8\n";
     CHECK_THAT(load_error_of([&] { load(folder.path(), scene_text("atoms = \"sent.ndx\"\n")); }),
                Contains("atom 8 that the scene does not have"));

@@ -164,7 +164,7 @@ TEST_CASE("what is felt of a rigid TL-3 in implicit water is the sum of all forc
     for (MoleculeDescription& molecule : scene.molecules) molecule.shape = Shape::Rigid;
     scene.molecules[1].motion = Motion::Fixed;
     const World world = load_world(scene);
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     const AtomTable& atoms = world.resource<AtomTable>();
     const SceneSystem system = load_system(scene);
     REQUIRE(system.topology.size() == atoms.size());

@@ -26,7 +26,7 @@ HandPose hand_at(double travel_m) {
 TEST_CASE("the molecule goes the handle's travel divided by A_d, step by step",
           "[simulation][step]") {
     World world = load_world(test::water_scene({"mode=2"}));
-    ContactModel felt = build_local_contact(world, first_hand(world), {}).model;
+    ContactModel felt = build_local_contact(world, hand_at(world, 0), {}).model;
 
     // 25 mm / 0.25e9 = 1 Å; travel counts from the last step, across the axis it does nothing.
     felt = test::step_once(world, hand_at(-0.025), felt);
@@ -36,7 +36,7 @@ TEST_CASE("the molecule goes the handle's travel divided by A_d, step by step",
     felt = test::step_once(world, aside, felt);
     CHECK(felt.molecule.place_angstrom.x() == Approx(6));
     const StepReport& back = step_world(world, hand_at(0), felt);
-    CHECK(local_contact_of(world).model.molecule.place_angstrom.x() == Approx(7));
+    CHECK(contact_at(world, 0).model.molecule.place_angstrom.x() == Approx(7));
     CHECK(back.moves.front().angstrom == Approx(1));
 }
 
@@ -47,8 +47,8 @@ TEST_CASE("A_d follows the force that is felt, not the one just computed", "[sim
 
     (void)step_world(world, hand_at(-0.012552), felt);
 
-    CHECK(local_contact_of(world).model.displacement_gain == Approx(1.2552e8).epsilon(1e-4));
-    CHECK(local_contact_of(world).model.molecule.place_angstrom.x() == Approx(6).margin(1e-4));
+    CHECK(contact_at(world, 0).model.displacement_gain == Approx(1.2552e8).epsilon(1e-4));
+    CHECK(contact_at(world, 0).model.molecule.place_angstrom.x() == Approx(6).margin(1e-4));
 }
 
 TEST_CASE("a contact model has force, stiffness and energy of the line in SI",
@@ -56,7 +56,7 @@ TEST_CASE("a contact model has force, stiffness and energy of the line in SI",
     World world = load_world(test::water_scene());
     move_grabbed(world, 3.1);
 
-    const ContactModel contact = build_local_contact(world, first_hand(world), {}).model;
+    const ContactModel contact = build_local_contact(world, hand_at(world, 0), {}).model;
 
     CHECK(contact.force_newton.x() == Approx(-0.322e-9).epsilon(0.005));
     CHECK(contact.force_newton.y() == 0);
@@ -77,29 +77,29 @@ TEST_CASE("a contact model has force, stiffness and energy of the line in SI",
 
 TEST_CASE("a hand pose that is no number moves nothing and is reported", "[simulation][step]") {
     World world = load_world(test::water_scene());
-    const ContactModel felt = build_local_contact(world, first_hand(world), {}).model;
+    const ContactModel felt = build_local_contact(world, hand_at(world, 0), {}).model;
 
     const StepReport report =
         step_world(world, hand_at(std::numeric_limits<double>::quiet_NaN()), felt);
 
     CHECK_FALSE(report.finite);
-    CHECK(local_contact_of(world).model.molecule.place_angstrom.x() == 7);
+    CHECK(contact_at(world, 0).model.molecule.place_angstrom.x() == 7);
     CHECK(force_along_line(world).energy == Approx(felt.potential_kcal_per_mol));
 }
 
 TEST_CASE("a contact force that is not finite stays until a step is finite again, for the servo",
           "[simulation][step]") {
     World world = load_world(test::water_scene({"mode=4"}));
-    const AtomRange held = held_range(world, first_hand(world));
+    const AtomRange held = held_range(world, hand_at(world, 0));
     const std::vector<Vec3> before = world.resource<AtomTable>().positions;
     const double charge = world.resource<AtomTable>().charge[held.first];
     world.write<AtomTable>().charge.write()[held.first] = std::numeric_limits<double>::quiet_NaN();
 
-    CHECK_FALSE(step_world(world, HandPose{}, local_contact_of(world).model).finite);
-    CHECK_FALSE(local_contact_of(world).model.force_newton.allFinite());
+    CHECK_FALSE(step_world(world, HandPose{}, contact_at(world, 0).model).finite);
+    CHECK_FALSE(contact_at(world, 0).model.force_newton.allFinite());
     CHECK(world.resource<AtomTable>().positions == before);
 
     world.write<AtomTable>().charge.write()[held.first] = charge;
     CHECK(step_world(world, HandPose{}, {}).finite);
-    CHECK(local_contact_of(world).model.force_newton.allFinite());
+    CHECK(contact_at(world, 0).model.force_newton.allFinite());
 }

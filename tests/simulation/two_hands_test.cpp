@@ -59,15 +59,11 @@ void step_to(World& world, const Poses& poses) {
 // A world in which only this hand holds something; what the other one held stands still where that
 // has it.
 World one_hand(const World& two, SceneDescription scene, std::size_t slot) {
-    const std::string still = slot == 0 ? scene.second->grab.molecule : scene.grab.molecule;
+    const std::string still = scene.hands[1 - slot].grab.molecule;
     for (MoleculeDescription& molecule : scene.molecules) {
         if (molecule.name == still) molecule.motion = Motion::Fixed;
     }
-    if (slot == 1) {
-        scene.grab = scene.second->grab;
-        scene.hand = scene.second->hand;
-    }
-    scene.second.reset();
+    scene.hands = {scene.hands[slot]};
     World world = load_world(scene);
     const auto range_of = [&](const World& of) {
         return of.find<Molecule>(molecule_called(of, still))->atoms;
@@ -102,16 +98,16 @@ TEST_CASE("two hands feel what one feels with the molecules where they have them
         const ContactModel& felt = contact_of(two, hands_of(two)[slot]).answer.model;
         const HandPose hand{.molecule =
                                 MoleculePose{poses[slot].place_angstrom,
-                                             grip_of(one, first_hand(one)).pose.orientation}};
+                                             grip_of(one, hand_at(one, 0)).pose.orientation}};
         // Relaxed beside another neighbour, it would be turned elsewhere.
         const AtomRange own = held_range(two, hands_of(two)[slot]);
-        const AtomRange same = held_range(one, first_hand(one));
-        RigidShape& shape = *one.write<RigidShape>(grip_of(one, first_hand(one)).molecule);
+        const AtomRange same = held_range(one, hand_at(one, 0));
+        RigidShape& shape = *one.write<RigidShape>(grip_of(one, hand_at(one, 0)).molecule);
         const Vec3 reference = two.resource<AtomTable>().positions[own.first];
         for (std::size_t i = 0; i < same.count; ++i)
             shape.atoms[i] = two.resource<AtomTable>().positions[own.first + i] - reference;
-        REQUIRE(step_world(one, hand, local_contact_of(one).model).finite);
-        const ContactModel& expected = local_contact_of(one).model;
+        REQUIRE(step_world(one, hand, contact_at(one, 0).model).finite);
+        const ContactModel& expected = contact_at(one, 0).model;
 
         REQUIRE(expected.force_newton.norm() > 50e-12);
         CHECK(relative(felt.force_newton, expected.force_newton) < 1e-12);
@@ -182,7 +178,7 @@ TEST_CASE("hands without a pose of their own stand still", "[simulation][second]
     first.molecule = poses[0];
     first.molecule->place_angstrom.x() += 0.5;
 
-    REQUIRE(step_world(world, first, local_contact_of(world).model).finite);
+    REQUIRE(step_world(world, first, contact_at(world, 0).model).finite);
 
     CHECK(poses_of(world)[0].place_angstrom == first.molecule->place_angstrom);
     CHECK(poses_of(world)[1].place_angstrom == poses[1].place_angstrom);
@@ -273,7 +269,7 @@ TEST_CASE("what two hands cannot hold is told at its place", "[simulation][secon
     };
     CHECK_THAT(error_of({"second.grab.molecule=left", "molecules.right.motion=fixed"}),
                Contains("--set second.grab.molecule=left") &&
-                   Contains("both hands hold 'left' as a whole"));
+                   Contains("two hands hold 'left' as a whole"));
     CHECK_THAT(
         error_of({"second.grab.measured_from=left"}),
         Contains("--set second.grab.measured_from=left") && Contains("expected a fixed molecule"));
@@ -313,10 +309,10 @@ TEST_CASE(
         });
         HandPose hand;
         hand.molecule = poses[0];
-        REQUIRE(step_world(one, hand, local_contact_of(one).model).finite);
+        REQUIRE(step_world(one, hand, contact_at(one, 0).model).finite);
 
         const ContactModel& felt = contact_of(two, first).answer.model;
-        const ContactModel& expected = local_contact_of(one).model;
+        const ContactModel& expected = contact_at(one, 0).model;
         CHECK(relative(felt.force_newton, expected.force_newton) < 1e-8);
         CHECK(relative(felt.torque_newton_metre, expected.torque_newton_metre) < 1e-8);
         CHECK(felt.potential_kcal_per_mol ==

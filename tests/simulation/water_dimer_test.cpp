@@ -65,7 +65,7 @@ TEST_CASE("every reference pose of two waters has OpenMM's energies and forces",
     // The scene's parameters, the reference's Coulomb constant.
     constexpr double reference_coulomb = 138.935457644382 / 4.184 * 10;  // kcal Å/mol/e²
     const World world = load_world(test::water_scene());
-    const FieldPoints water = held_points(world, first_hand(world));
+    const FieldPoints water = held_points(world, hand_at(world, 0));
     std::vector<double> sqrt_epsilon(water.sqrt_epsilon.begin(), water.sqrt_epsilon.end());
     std::vector<double> half_rmin(water.half_rmin.begin(), water.half_rmin.end());
     if (variant == "standard") {  // the reference took these with six digits, as sigma and epsilon

@@ -174,11 +174,11 @@ public:
     LocalContactModel step(const HandPose& hand, const ContactModel& felt) {
         if (std::isinf(spring_)) {
             (void)step_world(world_, hand, felt);
-            return local_contact_of(world_);
+            return contact_at(world_, 0);
         }
         relax_at(hand.molecule.value().place_angstrom);
-        update_contact(world_, first_hand(world_), hand);
-        return local_contact_of(world_);
+        update_contact(world_, hand_at(world_, 0), hand);
+        return contact_at(world_, 0);
     }
 
     // Force on the moved water with the other at rest (N, along x).
@@ -215,7 +215,7 @@ private:
 inline Measured run_guarded(const GuardedCase& c) {
     const SceneDescription scene = guarded_scene(c);
     SprungDimer dimer(scene, c.spring_N_per_m), at_rest(scene, c.spring_N_per_m);
-    ServoSettings servo = build_servo_settings(scene, dimer.world());
+    ServoSettings servo = build_servo_settings(scene, dimer.world(), 0);
     servo.safety.thermal_limit_newton = c.thermal_limit_newton;
     EmulatedOmni omni = guarded_omni(c);
     Watch watch(servo, [&](double distance) { return at_rest.newton_at(distance); });
@@ -227,7 +227,7 @@ inline Measured run_guarded(const GuardedCase& c) {
         return true;
     };
     const auto ticks = static_cast<std::uint64_t>(std::lround(c.seconds * servo_rate_hz));
-    const LocalContactModel& first = local_contact_of(dimer.world());
+    const LocalContactModel& first = contact_at(dimer.world(), 0);
     if (c.draw) {
         run_unsteady(ticks, c.draw, servo, omni, first, step, on_tick);
     } else {

@@ -24,7 +24,8 @@ namespace palpa::test {
 // Of the scene's molecules the one in the hand becomes the one with that number.
 inline SceneDescription with_held_at(std::size_t number, SceneDescription scene) {
     std::vector<MoleculeDescription>& all = scene.molecules;
-    const auto found = std::ranges::find(all, scene.grab.molecule, &MoleculeDescription::name);
+    const auto found =
+        std::ranges::find(all, scene.hands.front().grab.molecule, &MoleculeDescription::name);
     MoleculeDescription held = *found;
     all.erase(found);
     all.insert(all.begin() + static_cast<std::ptrdiff_t>(number), std::move(held));
@@ -43,7 +44,7 @@ inline AtomRange range_called(const World& world, std::string_view name) {
 // All atoms but those of the molecule in the hand.
 inline std::vector<std::uint32_t> atoms_around(const World& world) {
     std::vector<std::uint32_t> atoms;
-    for (const AtomRange& range : environment_of(world, first_hand(world))) {
+    for (const AtomRange& range : environment_of(world, hand_at(world, 0))) {
         for (std::uint32_t i = 0; i < range.count; ++i) atoms.push_back(range.first + i);
     }
     return atoms;

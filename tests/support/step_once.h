@@ -8,7 +8,7 @@ namespace palpa::test {
 // One step of a world with one hand, and what that feels then.
 inline ContactModel step_once(World& world, const HandPose& hand, const ContactModel& felt) {
     (void)step_world(world, hand, felt);
-    return local_contact_of(world).model;
+    return contact_at(world, 0).model;
 }
 
 }  // namespace palpa::test

@@ -107,12 +107,13 @@ void add_hands(const World& world, Bytes& bytes) {
     });
 }
 
-void add_coupling(const World& world, Bytes& bytes) {
-    const Coupling& coupling = world.resource<Coupling>();
-    bytes << coupling.is_guarded << coupling.pairs_per_tick << coupling.description.mode;
-    for (const double newton : {1e-12, 1e-10, 1e-9})
-        bytes << force_gain(coupling.laws.force, newton)
-              << displacement_gain(coupling.laws.displacement, newton);
+void add_couplings(const World& world, Bytes& bytes) {
+    world.each<Coupling>([&](Entity, const Coupling& coupling) {
+        bytes << coupling.is_guarded << coupling.pairs_per_tick << coupling.description.mode;
+        for (const double newton : {1e-12, 1e-10, 1e-9})
+            bytes << force_gain(coupling.laws.force, newton)
+                  << displacement_gain(coupling.laws.displacement, newton);
+    });
 }
 
 void add_mechanics(const World& world, Bytes& bytes) {
@@ -132,7 +133,7 @@ std::string world_bytes(const World& world) {
     Bytes bytes;
     add_atoms(world, bytes);
     add_hands(world, bytes);
-    add_coupling(world, bytes);
+    add_couplings(world, bytes);
     add_mechanics(world, bytes);
     return bytes.text();
 }

@@ -74,7 +74,7 @@ class Devices(unittest.TestCase):
         self.assertEqual(json.loads(run(two, "--second", "emulated").stdout)["hand_2"]["net_work_J"],
                          both["hand_2"]["net_work_J"])
         self.assertNotIn("hand_2", json.loads(run(WATER).stdout))
-        for scene, name, reason in ((WATER, "emulated", "with a second hand"),
+        for scene, name, reason in ((WATER, "emulated", "of two hands"),
                                     (two, "mouse", "needs a person and a window"),
                                     (two, "omni", "needs a person and a window")):
             result = run(scene, "--second", name)

@@ -123,7 +123,7 @@ class Version(unittest.TestCase):
         lines = palpa("--version").stdout.splitlines()
         self.assertRegex(lines[0], r"^\d+\.\d+\.\d+ \(\S+\)$")
         self.assertEqual([line.split()[0] for line in lines[1:]], ["formats", "compiler", "processor", "Vulkan"])
-        self.assertEqual(lines[1].split(None, 1)[1], "scene 2.1, recording 2.1, journal 2.2")
+        self.assertEqual(lines[1].split(None, 1)[1], "scene 2.2, recording 2.1, journal 2.2")
         self.assertRegex(lines[2], r"(GCC|Clang|MSVC) .*\d")
         # As the kernel of the operating system names what the processor can do.
         cpuinfo = Path("/proc/cpuinfo")

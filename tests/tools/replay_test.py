@@ -128,9 +128,9 @@ class Replay(unittest.TestCase):
         session = self.folder / "session.toml"
         text, line = session.read_text(), "# Recording format 2.1\n"
         self.assertEqual(text.count(line), 1)
-        self.assertIn('\nformat = "2.1"\n', text)
+        self.assertIn('\nformat = "2.2"\n', text)
         versions = json.loads((self.folder / "summary.json").read_text())["versions"]
-        self.assertEqual((versions["scene_format"], versions["recording_format"]), ("2.1", "2.1"))
+        self.assertEqual((versions["scene_format"], versions["recording_format"]), ("2.2", "2.1"))
         session.write_text(text.replace(line, "# Recording format 3.0\n"))
         refused = palpa("replay", self.folder, "--verify")
         self.assertEqual(refused.returncode, 2)
@@ -145,7 +145,7 @@ class Replay(unittest.TestCase):
             self.assertEqual(refused.returncode, 2)
             number = text.splitlines().index(line.strip()) + 1
             self.assertIn(f"session.toml:{number}: '{stated}' is not the number of a recording's format", refused.stderr)
-        session.write_text(text.replace('format = "2.1"', 'format = "3.1"'))
+        session.write_text(text.replace('format = "2.2"', 'format = "3.1"'))
         refused = palpa("run", session, "--headless")
         self.assertEqual(refused.returncode, 2)
         self.assertIn("scene format 3.1 is newer than this program", refused.stderr)

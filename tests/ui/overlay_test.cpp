@@ -38,7 +38,7 @@ struct Screen {
         int width = 0, height = 0;
         io.Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
         World world = load_world(scene);
-        readout.contact = local_contact_of(world).model;
+        readout.contact = contact_at(world, 0).model;
         ServoTick tick;
         tick.contact = readout.contact;
         for (int i = 0; i < 100; ++i) overlay.add_tick(tick);

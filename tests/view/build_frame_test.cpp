@@ -138,7 +138,7 @@ TEST_CASE("of a molecule of which a spring holds a residue, that residue stands 
         "molecules.held.motion=free", "grab.atom=\"" + residue + "\"", "statics.relax_steps=0"};
     const World world = load_world(
         test::with_held_at(number, read_scene(test::test_data("two_peptides"), on_spring)));
-    const AtomRange in_hand = held_range(world, first_hand(world));
+    const AtomRange in_hand = held_range(world, hand_at(world, 0));
     std::vector<glm::vec3> found, rest, others;
     for (const SphereShape& sphere : build_frame(world, {.force_arrow = false}).spheres) {
         const AtomName& name = world.resource<AtomTable>().names[sphere.pick];
@@ -165,7 +165,7 @@ TEST_CASE("each molecule is drawn as its appearance says, and all others as the 
     move_grabbed(world, 2.8);
     ViewSettings settings = shown_as(Representation::BallAndStick);
     settings.hydrogen_bonds = ShownBonds::InHand;
-    const AtomRange moved = held_range(world, first_hand(world));
+    const AtomRange moved = held_range(world, hand_at(world, 0));
     const auto spheres_of_moved = [&] { return shapes_of(build_frame(world, settings), moved); };
     const auto find_fixed = [&](const FrameScene& frame) {
         return *std::ranges::find_if(frame.spheres, [&](const SphereShape& sphere) {
@@ -200,7 +200,7 @@ TEST_CASE("one molecule as a ribbon, the other in full", "[view]") {
     const FrameScene full = build_frame(world, settings);
     AppearanceEdit{"resting", Representation::Pocket, {}, {}}.apply(world, 0);
     const FrameScene mixed = build_frame(world, settings);
-    const AtomRange held = held_range(world, first_hand(world));
+    const AtomRange held = held_range(world, hand_at(world, 0));
 
     CHECK(shapes_of(mixed, held).size() == shapes_of(full, held).size());
     CHECK(full.meshes.empty());

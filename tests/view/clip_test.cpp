@@ -90,7 +90,7 @@ TEST_CASE("clipped, the inhibitor is seen whole in its pocket from any side", "[
     GpuDevice device(test::validated());
     Renderer renderer(device);
     const World world = test::protease_world();
-    const AtomRange held = held_range(world, first_hand(world));
+    const AtomRange held = held_range(world, hand_at(world, 0));
     const auto representation =
         GENERATE(Representation::InHand, Representation::SpaceFilling, Representation::Pocket);
     const float azimuth = GENERATE(0.0F, 1.5F, 3.0F, 4.5F), elevation = GENERATE(-0.9F, 0.0F, 0.9F);

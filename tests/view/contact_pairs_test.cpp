@@ -162,7 +162,7 @@ TEST_CASE("contacts of the inhibitor in HIV-1 protease are those of a plain sear
           "[view][contacts]") {
     const World world = test::protease_world();
     const AtomTable& atoms = world.resource<AtomTable>();
-    const AtomRange held = held_range(world, first_hand(world));
+    const AtomRange held = held_range(world, hand_at(world, 0));
     const auto radius = [&](std::uint32_t i) {
         switch (atoms.names[i].atom[0]) {
             case 'C':
@@ -245,7 +245,7 @@ TEST_CASE("each kind has a shape, a colour and a pick of its own, between the at
         REQUIRE(labels.size() == 1);
         CHECK(labels[0].text == "1.0 Å overlap");
         CHECK(labels[0].place.x == Approx(1.2));
-        pair.world.set(pair.world.find<Grip>(first_hand(pair.world))->molecule,
+        pair.world.set(pair.world.find<Grip>(hand_at(pair.world, 0))->molecule,
                        Appearance{{}, {}, false});
         CHECK(count(build(), clash_pick) == 0);  // of what is hidden
     }

@@ -28,7 +28,7 @@ namespace {
 
 std::vector<ForcePart> find_parts(const World& world, ShownForces of,
                                   double least_nN = least_shown_nN) {
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     return find_force_parts(world, hand, gather_held(world, held_atoms(world, hand)), of,
                             find_residues(world), least_nN);
 }
@@ -59,7 +59,7 @@ std::vector<glm::vec3> list_arrows(const FrameScene& frame) {
 TEST_CASE("the forces of all residues, or of all atoms, sum to the force on the hand",
           "[view][forces]") {
     World world = GENERATE(0, 1) == 0 ? test::protease_world() : test::three_waters(1, {2, 3, 1});
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     // Another place than that of rest, where forces cancel.
     place_grabbed(world, grip_of(world, hand).pose.place_angstrom + Vec3(0.4, 0, 0));
     const Vec3 whole = grip_of(world, hand).projector * field_on_held(world, hand).force;
@@ -85,7 +85,7 @@ TEST_CASE("the forces of all residues, or of all atoms, sum to the force on the 
 
 TEST_CASE("with a reach, forces are those of the atoms in it alone", "[view][forces]") {
     const World world = test::three_waters(0, {0, 40, 0});
-    const HeldPoints held = gather_held(world, held_atoms(world, first_hand(world)));
+    const HeldPoints held = gather_held(world, held_atoms(world, hand_at(world, 0)));
     const AtomRange fixed = test::range_called(world, "fixed");
     const AtomRange third = test::range_called(world, "third");
 
@@ -93,7 +93,7 @@ TEST_CASE("with a reach, forces are those of the atoms in it alone", "[view][for
     const std::vector<Vec3> near = find_forces_by_atoms(world, held, 12);
 
     for (std::uint32_t i = 0; i < all.size(); ++i) {
-        CHECK(all[i].isZero(0) == has_atom(held_range(world, first_hand(world)), i));
+        CHECK(all[i].isZero(0) == has_atom(held_range(world, hand_at(world, 0)), i));
         const Vec3 expected = has_atom(third, i) ? Vec3(Vec3::Zero()) : all[i];
         CHECK((near[i] - expected).norm() <= 1e-12 * expected.norm());
     }

@@ -30,10 +30,10 @@ namespace {
 World moved_peptide(const std::vector<std::string>& settings) {
     World world = load_world(read_scene(test::in_project("scenes/peptide"), settings));
     HandPose pose;
-    pose.molecule = local_contact_of(world).model.molecule;
+    pose.molecule = contact_at(world, 0).model.molecule;
     for (int k = 0; k < 6; ++k) {
         pose.molecule->place_angstrom += Vec3(0.02, 0, 0);
-        (void)test::step_once(world, pose, local_contact_of(world).model);
+        (void)test::step_once(world, pose, contact_at(world, 0).model);
     }
     return world;
 }

@@ -153,7 +153,7 @@ TEST_CASE("a surface is closed, and made of the protein alone", "[view][layers]"
     const FrameScene frame = build_frame(world, plain(Representation::Surface));
     REQUIRE_FALSE(frame.meshes.empty());
     CHECK(is_closed(frame.meshes));
-    const AtomRange held = held_range(world, first_hand(world));
+    const AtomRange held = held_range(world, hand_at(world, 0));
     CHECK(frame.spheres.size() == held.count);  // within it
     std::set<std::uint32_t> atoms;
     for (const MeshShape& mesh : frame.meshes)
@@ -263,7 +263,7 @@ TEST_CASE("colours stand for numbers of the world", "[view][colours]") {
     // What has no value has no colour of the scale: atoms beside a surface, what is in hand, and
     // joints where nothing turns.
     CHECK(colours(Colouring::Potential) == colours(Colouring::Chain));
-    const AtomRange held = held_range(world, first_hand(world));
+    const AtomRange held = held_range(world, hand_at(world, 0));
     CHECK(colours(Colouring::Force)[held.first] == colours(Colouring::Element)[held.first]);
     CHECK(colours(Colouring::Activity)[7] == find_legend(world, Colouring::Activity).at(0).colour);
     CHECK_THAT(find_legend(world, Colouring::Activity).at(0).text,
@@ -275,7 +275,7 @@ TEST_CASE("what pushes the hand is what the pairs say", "[view][colours]") {
     const World world = load_world(test::water_scene());
     const AtomTable& atoms = world.resource<AtomTable>();
     const std::vector<double> pushes = find_pushes(world);
-    const AtomRange held = held_range(world, first_hand(world));
+    const AtomRange held = held_range(world, hand_at(world, 0));
     for (std::uint32_t i = 0; i < 6; ++i) {
         if (has_atom(held, i)) {
             CHECK(pushes[i] == 0);

@@ -42,7 +42,7 @@ void wait(World& world, std::uint64_t steps) { world.write<Clock>().steps += ste
 TEST_CASE("the ghost stands where what is in the hand was at the start", "[view][past]") {
     World world = test::three_waters(GENERATE(0, 1, 2), {0, 4, 0});
     move_grabbed(world, 2.8);
-    const AtomRange held = held_range(world, first_hand(world));
+    const AtomRange held = held_range(world, hand_at(world, 0));
     const AtomTable& atoms = world.resource<AtomTable>();
     const std::vector<Vec3> start = atoms.positions;
     ViewSettings settings = plain();
@@ -156,7 +156,7 @@ TEST_CASE("the trail is the way of the centre, fades, and is no longer than its 
     };
     const auto centre = [&] {
         return as_float(
-            centre_of_mass(world.resource<AtomTable>(), held_range(world, first_hand(world))));
+            centre_of_mass(world.resource<AtomTable>(), held_range(world, hand_at(world, 0))));
     };
     ViewSettings settings = plain();
     settings.marks.trail_s = 1;
@@ -223,7 +223,7 @@ TEST_CASE("a trail of many looks has few points, and ends where the molecule is"
     CHECK(frame.cones.size() < 40);
     CHECK(glm::distance(frame.cones.back().b,
                         as_float(centre_of_mass(world.resource<AtomTable>(),
-                                                held_range(world, first_hand(world))))) < 1e-5F);
+                                                held_range(world, hand_at(world, 0))))) < 1e-5F);
 }
 
 TEST_CASE("a ring stands where what is in the hand is at rest", "[view][past]") {
@@ -253,7 +253,7 @@ TEST_CASE("a ring stands where what is in the hand is at rest", "[view][past]") 
     }
     // Nothing pulls there, and something does half an ångström away.
     const auto force_at = [&](const Vec3& place) {
-        place_grabbed(world, place - grip_of(world, first_hand(world)).anchor);
+        place_grabbed(world, place - grip_of(world, hand_at(world, 0)).anchor);
         return field_on_grabbed(world).force.x();
     };
     const Vec3 there(rest.x, rest.y, rest.z);

@@ -105,7 +105,7 @@ TEST_CASE("a pocket is a cartoon, with sticks near to what is held", "[view][poc
     const AtomTable& atoms = world.resource<AtomTable>();
     const FrameScene frame = build_frame(world, {.representation = Representation::Pocket});
     const std::vector<bool> pocket = find_pocket(world, find_residues(world));
-    const AtomRange held = held_range(world, first_hand(world));
+    const AtomRange held = held_range(world, hand_at(world, 0));
 
     REQUIRE(frame.meshes.size() == 1);
     std::set<std::uint32_t> ribbon;  // the atoms CA that it is picked as
@@ -118,7 +118,7 @@ TEST_CASE("a pocket is a cartoon, with sticks near to what is held", "[view][poc
 TEST_CASE("drawn as a pocket, hydrogens of others are seen only in hydrogen bonds",
           "[view][pocket]") {
     const World world = load_world(test::with_held_at(GENERATE(0, 1, 2), protease_scene()));
-    const AtomRange held = held_range(world, first_hand(world));
+    const AtomRange held = held_range(world, hand_at(world, 0));
     const FrameScene frame = build_frame(world, {.representation = Representation::Pocket});
 
     std::vector<std::uint32_t> hydrogens, bonded;

@@ -194,8 +194,8 @@ TEST_CASE("hydrogen bonds are dashes between the atoms as drawn, with their leng
     World world = load_world(test::water_scene());
     move_grabbed(world, 2.9);
     std::vector<ViewLabel> labels;
-    const FrameScene frame = build_frame(world, std::array{local_contact_of(world).model},
-                                         {.force_arrow = false}, &labels);
+    const FrameScene frame =
+        build_frame(world, std::array{contact_at(world, 0).model}, {.force_arrow = false}, &labels);
 
     REQUIRE(labels.size() == 1);
     const auto places_of = [&](const char* name) {

@@ -196,19 +196,19 @@ SceneDescription build_scene(const ConnectOptions& options) {
     scene.engine->protocol = static_cast<EngineProtocol>(
         std::ranges::find(engine_protocol_names, options.protocol) - engine_protocol_names.begin());
     const Hold hold = find_hold(options.hold, names, parts);
-    scene.grab.molecule = hold.molecule;
-    scene.grab.atom = hold.atom;
-    scene.grab.spring_kcal_per_mol_angstrom2 = options.spring;
-    scene.hand.stroke = Stroke::Hold;
+    scene.hands.front().grab.molecule = hold.molecule;
+    scene.hands.front().grab.atom = hold.atom;
+    scene.hands.front().grab.spring_kcal_per_mol_angstrom2 = options.spring;
+    scene.hands.front().stroke = Stroke::Hold;
     const bool leads = options.lead != std::array<double, 3>{};
     constexpr double begin_s = 0.5;
     if (leads) {
-        scene.hand.stroke = Stroke::Lead;
+        scene.hands.front().stroke = Stroke::Lead;
         PathPoint start, end;
         start.time_s = begin_s;
         end.time_s = std::max(begin_s + 0.5, options.seconds - begin_s);
         end.place = options.lead;
-        scene.hand.path = {start, end};
+        scene.hands.front().path = {start, end};
     }
     scene.view.representation = Representation::InHand;
     scene.seconds = options.seconds;

@@ -125,8 +125,8 @@ void print_report(const SceneDescription& played, const WindowReport& report) {
 SceneDescription find_played(const SceneDescription& scene, const WindowReport& report,
                              bool is_emulated) {
     SceneDescription played = scene;
-    if (!is_emulated) played.hand.stroke = Stroke::Path;  // wherever the mouse went
-    played.coupling = report.settings.coupling;
+    if (!is_emulated) played.hands.front().stroke = Stroke::Path;  // wherever the mouse went
+    coupling_of(played, 0) = report.settings.coupling;
     played.period_ms = report.settings.period_ms;
     played.seconds = static_cast<double>(report.summary.ticks) / servo_rate_hz;
     return played;
@@ -135,7 +135,7 @@ SceneDescription find_played(const SceneDescription& scene, const WindowReport& 
 // Nothing where the scene has one hand.
 WindowDevice open_second_of(const SceneDescription& scene, const World& world,
                             const RunOptions& options, HandOrders& orders, WindowDevices& devices) {
-    if (!scene.second) return {};
+    if (scene.hands.size() < 2) return {};
     EmulatedOmniSettings settings = build_emulated_omni(scene, world, 1);
     if (!settings.hand) settings.hand = hand_model(HandGrip::Medium);
     if (!options.play) give_to_mouse(settings);
@@ -270,7 +270,7 @@ std::optional<NextScreen> show_recording(WindowShell& shell, PreferencesFile& pr
                                             .last_shot = options.last_shot,
                                             .last_shot_existing = check_shot(options),
                                             .last_shot_s = options.last_shot_s,
-                                            .second = {scene.second ? &second : nullptr},
+                                            .second = {scene.hands.size() > 1 ? &second : nullptr},
                                             .replay = folder,
                                             .sound = build_sound_choice(options, preferences)});
     if (report.replay) {

@@ -75,7 +75,7 @@ void print_mobile(const World& world, const JointRelaxReport& r) {
         "  relaxed     {:.3f} to {:.3f} kcal/mol in {} steps, largest move {:.3f} Å, remaining rms "
         "force {:.3g} kcal/mol per radian and Å\n",
         r.energy_before, r.energy_after, r.steps, r.largest_move, r.rms_force);
-    const ContactModel start = local_contact_of(world).model;
+    const ContactModel start = contact_at(world, 0).model;
     fmt::print("  start       {:.3f} kcal/mol, {:.3f} nN\n", start.potential_kcal_per_mol,
                start.force_newton.norm() * 1e9);
     if (!follows_by_model(world)) fmt::print("  relaxation  {}\n", unrelaxed_note);
@@ -83,12 +83,12 @@ void print_mobile(const World& world, const JointRelaxReport& r) {
 
 // How much of the handle's way a molecule takes where it is stiffest, along and across.
 void print_gains(const SceneDescription& scene, const World& world, double distance) {
-    if (!world.resource<Coupling>().is_guarded || !moves_in_space(world) ||
-        !scene.grab.atom.empty())
+    if (!coupling_of(world, hand_at(world, 0)).is_guarded || !moves_in_space(world) ||
+        !scene.hands.front().grab.atom.empty())
         return;
     const FieldSum field = field_on_grabbed_at(world, distance);
     GuardedSettings guarded =
-        build_servo_settings(scene, world).guarded.value_or(GuardedSettings{});
+        build_servo_settings(scene, world, 0).guarded.value_or(GuardedSettings{});
     guarded.gain_shape = GainShape::Tensor;
     const GuardedGain gain =
         guarded_gain(guarded, units::newton_per_kcal_per_mol_angstrom * field.force,
@@ -103,24 +103,24 @@ void print_gains(const SceneDescription& scene, const World& world, double dista
 // The stiffness caps of the scene's device and of the mouse.
 void print_cap(const SceneDescription& scene, const World& world) {
     const auto cap_with = [&](const DeviceSpec& device) {
-        return build_servo_settings(scene, world, device)
+        return build_servo_settings(scene, world, 0, device)
             .guarded.value_or(GuardedSettings{})
             .device_cap_N_per_m;
     };
-    if (!world.resource<Coupling>().is_guarded) return;
-    MouseHandleSettings mouse = mouse_handle_of(hand_model(scene.hand.grip));
-    mouse.delay_ticks = static_cast<int>(scene.device.servo_delay_ticks);
+    if (!coupling_of(world, hand_at(world, 0)).is_guarded) return;
+    MouseHandleSettings mouse = mouse_handle_of(hand_model(scene.hands.front().grip));
+    mouse.delay_ticks = static_cast<int>(device_of(scene, 0).servo_delay_ticks);
     fmt::print(
         "  cap         {:.4g} N/m on the hand with the scene's device ({:.3g} N s/m), {:.4g} N/m "
         "by "
         "mouse; other devices by their own viscosity\n",
-        cap_with(describe_emulated_device(scene)), scene.device.viscosity_N_s_per_m,
+        cap_with(describe_emulated_device(scene, 0)), device_of(scene, 0).viscosity_N_s_per_m,
         cap_with(MouseHandle(mouse).spec()));
 }
 
 // Where it began, of one that was relaxed.
 void print_relaxed(const World& world, const RelaxReport& r) {
-    const ContactModel start = local_contact_of(world).model;
+    const ContactModel start = contact_at(world, 0).model;
     fmt::print(
         "  relaxed     {:.3f} to {:.3f} kcal/mol in {} evaluations, moved {:.3f} Å, turned "
         "{:.2f}°, remaining force {:.3f} pN\n",
@@ -147,21 +147,24 @@ void print_rest(const World& world, double rest) {
         }
     }
     fmt::print("  attraction  {:.3f} nN at {:.2f} Å, felt as {:.3f} N\n", strongest, where,
-               hand_force(world.resource<Coupling>().laws.force, strongest * 1e-9));
+               hand_force(coupling_of(world, hand_at(world, 0)).laws.force, strongest * 1e-9));
 }
 
 }  // namespace
 
 namespace {
 
-// What hands hold, where there are two.
+// What hands hold, where there are several.
 void print_hands(const SceneDescription& scene) {
-    const std::vector<HandTables> hands = list_hands(scene);
-    if (hands.size() < 2) return;
-    const auto held = [](const GrabDescription& grab) {
-        return grab.atom.empty() ? grab.molecule : grab.molecule + ":" + grab.atom + " by a spring";
-    };
-    fmt::print("  hands       two: {}, and {}\n", held(hands[0].grab), held(hands[1].grab));
+    if (scene.hands.size() < 2) return;
+    std::vector<std::string> held;
+    for (const HandDescription& hand : scene.hands) {
+        const GrabDescription& grab = hand.grab;
+        held.push_back(grab.molecule.empty() ? "nothing"
+                       : grab.atom.empty()   ? grab.molecule
+                                             : grab.molecule + ":" + grab.atom + " by a spring");
+    }
+    fmt::print("  hands       {}: {}\n", held.size(), fmt::join(held, ", "));
 }
 
 }  // namespace
@@ -173,32 +176,33 @@ void print_line(const SceneDescription& scene, const World& world, ProgressLine&
         print_mobile(world, *report.joints_at_rest);
     } else if (report.rigid) {
         print_relaxed(world, *report.rigid);
-    } else if (!world.find<Grip>(first_hand(world))) {
+    } else if (!world.find<Grip>(hand_at(world, 0))) {
         fmt::print("  in hand     nothing\n");
     } else if (const std::optional<double> rest = equilibrium_distance(world)) {
         print_rest(world, *rest);
     }
-    if (!world.find<Grip>(first_hand(world))) return print_cap(scene, world);
+    if (!world.find<Grip>(hand_at(world, 0))) return print_cap(scene, world);
     // In space these are places on a line along x, and no distances.
     const bool in_space = moves_in_space(world);
     const char* const along = in_space ? "x = " : "";
     // A spring is pulled at; its molecule is not moved against others.
-    const bool on_spring = !scene.grab.atom.empty();
+    const bool on_spring = !scene.hands.front().grab.atom.empty();
     tell(progress.stages(), "searching for the repulsive wall");
     const std::optional<double> wall =
         on_spring ? std::nullopt
-                  : repulsion_distance(world, scene.hand.peak_nN / force_nN,
+                  : repulsion_distance(world, scene.hands.front().peak_nN / force_nN,
                                        in_space ? grabbed_distance(world) : 30);
     progress.wipe();
     if (wall) {
         fmt::print("  {}   {} nN at {}{:.3f} Å, felt as {:.3f} N\n",
-                   in_space ? "resists  " : "repulsion", scene.hand.peak_nN, along, *wall,
-                   hand_force(world.resource<Coupling>().laws.force, scene.hand.peak_nN * 1e-9));
+                   in_space ? "resists  " : "repulsion", scene.hands.front().peak_nN, along, *wall,
+                   hand_force(coupling_of(world, hand_at(world, 0)).laws.force,
+                              scene.hands.front().peak_nN * 1e-9));
     }
     const FeltStiffness stiffest = stiffest_place(scene, world, progress.stages());
     progress.wipe();
-    const double calm =
-        calm_stiffness(scene, hand_model(scene.hand.grip), world.resource<Clock>().period_s);
+    const double calm = calm_stiffness(scene, 0, hand_model(scene.hands.front().grip),
+                                       world.resource<Clock>().period_s);
     fmt::print(
         "  stiffest    {:.3g} N/m on the hand at {}{:.3f} Å; this hand is stable up to {:.3g} "
         "N/m\n",
@@ -256,9 +260,10 @@ void print_travel(const std::string& title, const HandTravel& travel) {
 void print_summary(const SceneDescription& scene, const Summary& s) {
     fmt::print("{}: {} s, mode {}, T_s = {} ms, {} hand, friction {} N, stroke {}\n",
                printable(scene.title), scene.seconds,
-               coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)], scene.period_ms,
-               grip_names[static_cast<std::size_t>(scene.hand.grip)], scene.device.friction_N,
-               stroke_names[static_cast<std::size_t>(scene.hand.stroke)]);
+               coupling_mode_names[static_cast<std::size_t>(coupling_of(scene, 0).mode)],
+               scene.period_ms, grip_names[static_cast<std::size_t>(scene.hands.front().grip)],
+               device_of(scene, 0).friction_N,
+               stroke_names[static_cast<std::size_t>(scene.hands.front().stroke)]);
     if (s.is_on_axis) {
         fmt::print("  felt        at most {:.3f} N of attraction and {:.3f} N of repulsion\n",
                    s.largest_attraction_N, s.largest_repulsion_N);
@@ -297,7 +302,7 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
         const UnbindingPath& j = *s.unbinding;
         fmt::print("  unbinding   centre of mass up to {:.2f} Å from its start", j.farthest);
         // What a spring holds is bonded to others.
-        if (std::isfinite(j.closest) && scene.grab.atom.empty()) {
+        if (std::isfinite(j.closest) && scene.hands.front().grab.atom.empty()) {
             fmt::print(
                 "; its nearest heavy atom there is {:.2f} Å away\n              (closest on the "
                 "way {:.2f} Å)",

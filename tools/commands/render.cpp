@@ -161,7 +161,7 @@ OrbitCamera render_camera(const SceneDescription& scene, const RenderOptions& op
 
 void finish_frame(const ViewDescription& view, const World& world, const OrbitCamera& camera,
                   FrameScene& frame) {
-    if (view.clip) clip_in_front(held_range(world, first_hand(world)), camera, frame);
+    if (view.clip) clip_in_front(held_range(world, hand_at(world, 0)), camera, frame);
     frame.camera = frame_camera(camera, frame);
 }
 

@@ -57,7 +57,10 @@ void check_device(const std::filesystem::path& folder) {
                                     device, folder.string()));
     };
     check(summary);
-    if (summary.is_object() && summary.contains("hand_2")) check(summary["hand_2"]);
+    for (std::size_t hand = 2; summary.is_object() && hand <= most_hands; ++hand) {
+        const std::string key = fmt::format("hand_{}", hand);
+        if (summary.contains(key)) check(summary[key]);
+    }
 }
 
 // What clients pulled is in no recording but a window's, which has a journal.
@@ -181,7 +184,7 @@ int replay_command(const ReplayOptions& options) {
     }
     check_repeats(scene);
     check_device(options.recording);
-    const std::size_t hands = list_hands(scene).size();
+    const std::size_t hands = scene.hands.size();
     TraceCheck check(options.recording, count_ticks(scene), scene.every, hands);
     check_has_rows(check, options.recording);
     print_notes(scene.notes);

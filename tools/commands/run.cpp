@@ -115,9 +115,9 @@ void check_options(const RunOptions& options) {
 }
 
 void check_second(const RunOptions& options, const SceneDescription& scene) {
-    if (!options.second || scene.second) return;
+    if (!options.second || scene.hands.size() > 1) return;
     throw LoadError({fmt::format("--second {}", *options.second)},
-                    "needs a scene with a second hand ([second.grab]), such as water/two-hands or "
+                    "needs a scene of two hands ([[hand]]), such as water/two-hands or "
                     "hiv/two-hands");
 }
 
@@ -160,8 +160,9 @@ std::unique_ptr<FrameWriter> open_frames(const RunOptions& options, const ViewDe
 std::vector<std::unique_ptr<Device>> open_hands(const SceneDescription& scene, const World& world,
                                                 const RunOptions& options) {
     std::vector<std::unique_ptr<Device>> devices;
-    const std::optional<std::string> named[] = {options.device, options.second};
-    for (std::size_t slot = 0; slot < list_hands(scene).size(); ++slot) {
+    std::vector<std::optional<std::string>> named{options.device, options.second};
+    named.resize(std::max(named.size(), scene.hands.size()));
+    for (std::size_t slot = 0; slot < scene.hands.size(); ++slot) {
         devices.push_back(open_device(named[slot].value_or("emulated"),
                                       {.emulated = build_emulated_omni(scene, world, slot)})
                               .device);
@@ -277,7 +278,7 @@ int run_scene(const SceneDescription& read, const RunOptions& options) {
     const EmulatedOmniSettings settings = build_emulated_omni(scene, world);
     std::vector<std::string> warnings =
         list_warnings(scene, world, settings.script, progress.stages());
-    for (std::size_t slot = 1; slot < list_hands(scene).size(); ++slot) {
+    for (std::size_t slot = 1; slot < scene.hands.size(); ++slot) {
         const HandScript script = build_emulated_omni(scene, world, slot).script;
         for (std::string& warning :
              list_hand_warnings(scene, world, script, slot, progress.stages()))

@@ -65,8 +65,8 @@ nlohmann::ordered_json describe_study(const StudyOptions& options) {
     return {{"versions", {{"palpa", version_name}, {"commit", commit_name}}},
             {"scene", scene.title},
             {"scene_hash", scene_hash(scene)},
-            {"hand", grip_names[static_cast<std::size_t>(scene.hand.grip)]},
-            {"friction_N", scene.device.friction_N},
+            {"hand", grip_names[static_cast<std::size_t>(scene.hands.front().grip)]},
+            {"friction_N", device_of(scene, 0).friction_N},
             {"period_ms", scene.period_ms},
             {"seed", options.seed},
             {"rest_angstrom", find_rest(scene, load_world(scene))}};

@@ -41,8 +41,8 @@ void settle_edit(World& world) {
 Entity find_hand(const World& world, std::size_t hand) {
     const std::vector<Entity> hands = find_hands(world);
     if (hand >= hands.size())
-        refuse(fmt::format("there is no {} hand; the scene has {}", hand == 1 ? "second" : "such",
-                           hands.size()));
+        refuse(fmt::format("there is no {} hand; the scene has {}",
+                           hand < most_hands ? edit_hand_names[hand] : "such", hands.size()));
     return hands[hand];
 }
 

@@ -17,12 +17,11 @@ struct Move {
     std::optional<double> displacement_gain = {};
 };
 
-Move find_move(const World& world, const Grip& grip, const Hand& before, const HandPose& pose,
-               const ContactModel& felt, std::uint32_t start) noexcept {
+Move find_move(const DisplacementLaw& law, const Grip& grip, const Hand& before,
+               const HandPose& pose, const ContactModel& felt, std::uint32_t start) noexcept {
     // What the servo put elsewhere was held before.
     if (pose.molecule) return {pose.start == start ? *pose.molecule : grip.pose};
-    const double gain =
-        displacement_gain(world.resource<Coupling>().laws.displacement, felt.force_newton.norm());
+    const double gain = displacement_gain(law, felt.force_newton.norm());
     const Vec3 handle_m = grip.projector * (pose.travel_m - before.travel_m);
     Move move{{grip.pose.place_angstrom + handle_m / gain * units::angstrom_per_metre,
                grip.pose.orientation},
@@ -56,8 +55,8 @@ void follow_hands(World& world, const StepInput& input) {
         const HandPose& pose = input.hands[slot];
         const ContactModel& felt = input.felt[slot++];
         if (grip) {
-            const Move move = find_move(world, *grip, hand, pose, felt,
-                                        contact_of(world, entity).answer.model.start);
+            const Move move = find_move(coupling_of(world, entity).laws.displacement, *grip, hand,
+                                        pose, felt, contact_of(world, entity).answer.model.start);
             report.finite = report.finite && is_within_reach(move.to);
             report.moves.back() = {(move.to.place_angstrom - grip->pose.place_angstrom).norm(),
                                    move.displacement_gain};

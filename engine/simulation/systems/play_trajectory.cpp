@@ -133,12 +133,12 @@ SceneDescription as_played(SceneDescription scene) {
     }
     for (MoleculeDescription& molecule : scene.molecules) {
         molecule = in_one_piece(std::move(molecule));
-        const bool is_held = molecule.name == scene.grab.molecule ||
-                             (scene.second && molecule.name == scene.second->grab.molecule);
+        const bool is_held = std::ranges::any_of(scene.hands, [&](const HandDescription& hand) {
+            return hand.grab.molecule == molecule.name;
+        });
         if (!is_held) molecule.motion = Motion::Fixed;
     }
-    hold_whole(scene.grab, scene);
-    if (scene.second) hold_whole(scene.second->grab, scene);
+    for (HandDescription& hand : scene.hands) hold_whole(hand.grab, scene);
     return scene;
 }
 

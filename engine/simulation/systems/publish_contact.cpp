@@ -22,13 +22,13 @@ namespace {
 constexpr std::size_t fewest_neighbours = 100;
 
 // Pairs that a servo tick has time for. Those that follow take twice the time.
-std::size_t most_pairs(const World& world) noexcept {
-    return world.resource<Coupling>().pairs_per_tick / (follows_by_model(world) ? 2 : 1);
+std::size_t most_pairs(const World& world, Entity hand) noexcept {
+    return coupling_of(world, hand).pairs_per_tick / (follows_by_model(world) ? 2 : 1);
 }
 
 // Atoms around what the hand holds that a tick has time for where every pair acts.
 std::size_t most_neighbours(const World& world, Entity hand) noexcept {
-    return most_pairs(world) / std::max<std::size_t>(held_range(world, hand).count, 1);
+    return most_pairs(world, hand) / std::max<std::size_t>(held_range(world, hand).count, 1);
 }
 
 bool has_ends(const World& world) noexcept {
@@ -125,7 +125,7 @@ std::vector<std::uint32_t> find_in_reach(const World& world, Entity hand) {
     std::size_t pairs = 0;
     for (const Near& next : near) {
         pairs += next.pairs;
-        if (atoms.size() >= fewest && (next.pairs == 0 || pairs > most_pairs(world))) break;
+        if (atoms.size() >= fewest && (next.pairs == 0 || pairs > most_pairs(world, hand))) break;
         atoms.push_back(next.atom);
         places.push_back(table.positions[next.atom]);
         has_solvation.push_back(table.solvation.volume[next.atom] != 0 ||
@@ -179,7 +179,7 @@ LocalField build_local_field(const World& world, Entity hand) {
     for (const OtherHeld& other : others)
         field.held.push_back(build_held_field(world, hand, other, group));
     field.has_atoms =
-        world.resource<Coupling>().is_guarded &&
+        coupling_of(world, hand).is_guarded &&
         (has_ends(world) || field.frozen.environment.positions.size() + count_atoms(others) <=
                                 std::max(most_neighbours(world, hand), fewest_neighbours));
     if (field.has_atoms)
@@ -248,13 +248,13 @@ ContactModel build_model(const World& world, Entity hand, const HandPose& pose, 
     contact.stiffness_matrix_N_per_m = grip.projector * pull.stiffness * grip.projector *
                                        units::newton_per_metre_per_kcal_per_mol_angstrom2;
     contact.stiffness_N_per_m = extreme_stiffness(contact.stiffness_matrix_N_per_m);
-    contact.displacement_gain = displacement_gain(world.resource<Coupling>().laws.displacement,
-                                                  contact.force_newton.norm());
+    contact.displacement_gain =
+        displacement_gain(coupling_of(world, hand).laws.displacement, contact.force_newton.norm());
     contact.potential_kcal_per_mol = pull.energy;
     contact.active_freedom = grip.freedom + static_cast<int>(find_active_freedom(world));
     contact.period_s = world.resource<Clock>().period_s;
     contact.is_compliant = has_mobile(world);
-    if (const std::optional<double> error_pN = find_error_estimate(world))
+    if (const std::optional<double> error_pN = find_error_estimate(world, hand))
         contact.error_estimate_newton = 1e-12 * *error_pN;
     if (const auto& relaxed = world.resource<StepReport>().relaxed; relaxed && relaxed->model_age)
         contact.model_age_angstrom = *relaxed->model_age;
@@ -265,7 +265,7 @@ ContactModel build_model(const World& world, Entity hand, const HandPose& pose, 
 // Whether the servo, or the stiffness, needs the atoms around what is held.
 bool needs_field(const World& world, Entity hand) noexcept {
     return holds_whole(world, hand) &&
-           (world.resource<Coupling>().is_guarded || grip_of(world, hand).base >= 0);
+           (coupling_of(world, hand).is_guarded || grip_of(world, hand).base >= 0);
 }
 
 // The share of what was foretold that came, 0 to 1, or nothing where too little was.

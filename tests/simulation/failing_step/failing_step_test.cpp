@@ -60,7 +60,7 @@ HandPose hand_at(double mm) {
 }
 
 bool step(World& world, double mm) {
-    return step_world(world, hand_at(mm), local_contact_of(world).model).finite;
+    return step_world(world, hand_at(mm), contact_at(world, 0).model).finite;
 }
 
 }  // namespace

@@ -45,7 +45,9 @@ constexpr Write writes[] = {
         if (PaperStep* const paper = write_solver<PaperStep>(world)) paper->statics.h = 5;
     },
     [](World& world, std::mt19937&) { world.set_resource(Clock{1, 2, 3}); },
-    [](World& world, std::mt19937&) { world.write<Coupling>().pairs_per_tick = 1; },
+    [](World& world, std::mt19937&) {
+        world.write<Coupling>(hand_at(world, 0))->pairs_per_tick = 1;
+    },
     [](World& world, std::mt19937&) { world.write<Interactions>().replaced_pairs.push_back({}); },
     [](World& world, std::mt19937&) {
         world.write_each<Pose>([](Entity, Pose& pose) { pose.place = Vec3::Zero(); });
@@ -54,9 +56,9 @@ constexpr Write writes[] = {
         world.write_each<Molecule>([](Entity, Molecule& molecule) { molecule.name += "X"; });
     },
     [](World& world, std::mt19937&) {
-        world.write<Grip>(first_hand(world))->pose.place_angstrom += Vec3::Ones();
+        world.write<Grip>(hand_at(world, 0))->pose.place_angstrom += Vec3::Ones();
     },
-    [](World& world, std::mt19937&) { world.write<Contact>(first_hand(world))->answer = {}; },
+    [](World& world, std::mt19937&) { world.write<Contact>(hand_at(world, 0))->answer = {}; },
     [](World& world, std::mt19937&) { world.set(world.create(), Spring{}); },
     [](World& world, std::mt19937& random) {
         world.set(world.create(), Tag{1, {double(random())}});

@@ -50,7 +50,7 @@ Vec3 centre_of(const World& world, const std::string& molecule) {
 
 void step(World& world, int steps) {
     for (int i = 0; i < steps; ++i)
-        REQUIRE(step_world(world, HandPose{}, local_contact_of(world).model).finite);
+        REQUIRE(step_world(world, HandPose{}, contact_at(world, 0).model).finite);
 }
 
 Entity add_free(World& world, const std::string& name, const std::array<double, 3>& place) {
@@ -117,10 +117,10 @@ TEST_CASE("a water on a spring rests where the spring pulls as hard as the wind"
 TEST_CASE("in a hand there is no wind", "[wind]") {
     World world = water_in_the_wind();
     TakeEdit{"free"}.apply(world, 0);
-    const Vec3 place = held_place(world, first_hand(world));
+    const Vec3 place = held_place(world, hand_at(world, 0));
     step(world, 20);
-    CHECK((held_place(world, first_hand(world)) - place).norm() < 1e-12);
-    CHECK(local_contact_of(world).model.force_newton.norm() <
+    CHECK((held_place(world, hand_at(world, 0)) - place).norm() < 1e-12);
+    CHECK(contact_at(world, 0).model.force_newton.norm() <
           0.02 * wind * units::newton_per_kcal_per_mol_angstrom);
     LetGoEdit{}.apply(world, 0);
     MobilityEdit{"free", Motion::Free, {}}.apply(world, 0);

@@ -322,7 +322,7 @@ std::vector<AnswerPose> list_poses(const AnswerPoseSettings& settings, AnswerSta
 }
 
 Answers measure_at(AnswerStart& at, const AnswerPoseSettings& settings) {
-    const ForceLaw& law = at.start.world.resource<Coupling>().laws.force;
+    const ForceLaw& law = coupling_of(at.start.world, hand_at(at.start.world, 0)).laws.force;
     Answers answers{{}, 1e-12 * force_gain(law, 0), 0};
     if (settings.count == 0) return answers;
     const std::vector<AnswerPose> poses = list_poses(settings, at);

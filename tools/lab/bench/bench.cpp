@@ -51,9 +51,9 @@ namespace {
 // What a step says of the force with what the first hand holds at `distance` along its line; of
 // what moves by itself, what rigid molecules would feel there. kcal/mol/Å.
 double find_step_force(World& world, double distance) {
-    if (is_mobile(world, first_hand(world))) return force_along_line_at(world, distance).force;
+    if (is_mobile(world, hand_at(world, 0))) return force_along_line_at(world, distance).force;
     move_grabbed(world, distance);
-    return build_local_contact(world, first_hand(world), {}).model.force_newton.x() /
+    return build_local_contact(world, hand_at(world, 0), {}).model.force_newton.x() /
            units::newton_per_kcal_per_mol_angstrom;
 }
 
@@ -63,14 +63,14 @@ BenchRow bench_step(const std::string& scene_name, World world) {
     const int batch = moves_in_space(world) ? 1 : 200;
     BenchRow row{
         "step/" + scene_name, {}, "us", {}, "relative", "central difference of the energy"};
-    ContactModel felt = local_contact_of(world).model;
+    ContactModel felt = contact_at(world, 0).model;
     HandPose hand;
     int tick = 0;
     row.samples = sample(101, 1e6 / batch, [&] {
         for (int i = 0; i < batch; ++i, ++tick) {
             hand.travel_m.x() = 0.005 * std::sin(0.01 * tick);
             (void)step_world(world, hand, felt);
-            felt = local_contact_of(world).model;
+            felt = contact_at(world, 0).model;
         }
     });
     double worst = 0;
@@ -115,7 +115,7 @@ BenchRow bench_transaction(const std::string& scene_name, World world, double st
 void bench_steps(const std::string& scene_name, const World& world, std::vector<BenchRow>& rows) {
     rows.push_back(bench_step(scene_name, world));
     rows.push_back(bench_transaction(scene_name, world, quantile(rows.back().samples, 0.5)));
-    if (!has_fast_pairs(world, first_hand(world))) return;
+    if (!has_fast_pairs(world, hand_at(world, 0))) return;
     World in_double = world;
     in_double.write<Interactions>().precision = PairPrecision::Double;
     rows.push_back(bench_step(scene_name + "/double", std::move(in_double)));

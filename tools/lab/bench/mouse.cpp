@@ -24,14 +24,14 @@ constexpr double pull_angstrom = 50;
 // The direction of the scene's path, else away from the centre of all other atoms.
 Vec3 find_direction(const SceneDescription& scene, const World& world) {
     Vec3 farthest = Vec3::Zero();
-    if (scene.hand.stroke == Stroke::Lead) {
-        for (const PathPoint& point : scene.hand.path) {
+    if (scene.hands.front().stroke == Stroke::Lead) {
+        for (const PathPoint& point : scene.hands.front().path) {
             const Vec3 place(point.place.data());
             if (place.norm() > farthest.norm()) farthest = place;
         }
     }
     if (!farthest.isZero()) return farthest.normalized();
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
     Vec3 own = Vec3::Zero(), all = Vec3::Zero();
     const std::vector<std::uint32_t> held = held_atoms(world, hand);

@@ -32,7 +32,7 @@ Played play(World& world) {
     using Clock = std::chrono::steady_clock;
     const auto period =
         std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_s));
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     const MoleculePose start = grip_of(world, hand).pose;
     RenewalWorker worker;
     Played played;

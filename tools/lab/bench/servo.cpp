@@ -97,12 +97,11 @@ void bench_made_up_servo(std::vector<BenchRow>& rows) {
 void bench_servo(const std::string& scene_name, const SceneDescription& scene,
                  std::vector<BenchRow>& rows) {
     const World world = load_world(scene);
-    BenchRow row = time_servo("servo/" + scene_name, build_servo_settings(scene, world),
-                              local_contact_of(world));
-    row.reference +=
-        fmt::format("; {} x {} of {} atoms", local_contact_of(world).field.group.size(),
-                    local_contact_of(world).field.frozen.environment.positions.size(),
-                    world.resource<AtomTable>().positions.size());
+    BenchRow row = time_servo("servo/" + scene_name, build_servo_settings(scene, world, 0),
+                              contact_at(world, 0));
+    row.reference += fmt::format("; {} x {} of {} atoms", contact_at(world, 0).field.group.size(),
+                                 contact_at(world, 0).field.frozen.environment.positions.size(),
+                                 world.resource<AtomTable>().positions.size());
     rows.push_back(std::move(row));
 }
 

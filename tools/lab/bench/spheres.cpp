@@ -28,9 +28,9 @@ bool is_residue(const AtomName& name, const AtomName& other) {
 
 // The first atom of what the hand's spring holds.
 std::uint32_t find_centre(const SceneDescription& scene, const Connectivity& connectivity) {
-    const std::vector<std::string_view> words = split_words(scene.grab.atom);
-    const auto held =
-        std::ranges::find(scene.molecules, scene.grab.molecule, &MoleculeDescription::name);
+    const std::vector<std::string_view> words = split_words(scene.hands.front().grab.atom);
+    const auto held = std::ranges::find(scene.molecules, scene.hands.front().grab.molecule,
+                                        &MoleculeDescription::name);
     if (!words.empty() && held != scene.molecules.end()) {
         for (std::uint32_t i = 0; i < connectivity.names.size(); ++i) {
             const AtomName& name = connectivity.names[i];
@@ -45,7 +45,7 @@ std::uint32_t find_centre(const SceneDescription& scene, const Connectivity& con
 // A sphere with its middle residue on the hand's spring.
 World build_sphere(const SceneDescription& scene, const CutSystem& sphere, const AtomName& middle) {
     ModelSpring spring;
-    spring.k = scene.grab.spring_kcal_per_mol_angstrom2;
+    spring.k = scene.hands.front().grab.spring_kcal_per_mol_angstrom2;
     for (std::uint32_t i = 0; i < sphere.connectivity.names.size(); ++i) {
         if (is_residue(sphere.connectivity.names[i], middle)) spring.atoms.push_back(i);
     }

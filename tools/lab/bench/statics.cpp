@@ -79,7 +79,7 @@ void bench_region(const std::string& scene_name, SceneDescription scene,
     scene.statics.relax_steps = 0;
     World world = load_world(scene);
     if (!has_mobile(world)) return;
-    ContactModel felt = local_contact_of(world).model;
+    ContactModel felt = contact_at(world, 0).model;
     HandPose hand;
     const std::string reference =
         fmt::format("{} joints, {} tiles", world.resource<StartReport>().joints,
@@ -87,7 +87,7 @@ void bench_region(const std::string& scene_name, SceneDescription scene,
     const std::vector<double> samples = sample(21, 1e3, [&] {
         hand.travel_m.x() += 1e-6;
         (void)step_world(world, hand, felt);
-        felt = local_contact_of(world).model;
+        felt = contact_at(world, 0).model;
     });
     rows.push_back(
         {fmt::format("statics/{}/step/{}within={}", scene_name, side_chains ? "side-chains/" : "",

@@ -88,17 +88,17 @@ double relax(const BenchStart& start, RelaxMethod method, std::size_t steps, Wor
 void put(const TorsionState& state, World& world) { put_state(world, state); }
 
 Vec3 find_force(const World& world) {
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     return spring_of(world, hand) ? find_force_on_held(world, hand)
                                   : Vec3(find_pull_on_held(world, hand).tail<3>());
 }
 
 double find_reach(const SceneDescription& scene) {
     double farthest = 0;
-    const bool leads = scene.hand.stroke == Stroke::Lead;
-    if (leads || scene.hand.stroke == Stroke::Path) {
-        for (const PathPoint& point : scene.hand.path) {
-            const double away = point.place[0] - scene.hand.path.front().place[0];
+    const bool leads = scene.hands.front().stroke == Stroke::Lead;
+    if (leads || scene.hands.front().stroke == Stroke::Path) {
+        for (const PathPoint& point : scene.hands.front().path) {
+            const double away = point.place[0] - scene.hands.front().path.front().place[0];
             if (std::abs(away) > std::abs(farthest)) farthest = away;
         }
     }

@@ -30,7 +30,7 @@ constexpr double most_share = 0.9;  // of samples that have to be within the tol
 
 // The field of all pairs in double, where nothing moves by itself.
 Vec3 find_rigid_force(const World& world, const MoleculePose& pose) {
-    const Entity hand = first_hand(world);
+    const Entity hand = hand_at(world, 0);
     FieldPoints group = held_points(world, hand);
     const Mat3 turn = pose.orientation.toRotationMatrix();
     std::vector<Vec3> positions;
@@ -66,13 +66,13 @@ public:
     Found find_force(const TorsionState& state, const Vec3& held_at) {
         constexpr int steps = 200, last_steps = 50;
         put_state(world_, state);
-        move_held(world_, held_at - held_place(world_, first_hand(world_)));
+        move_held(world_, held_at - held_place(world_, hand_at(world_, 0)));
         Vec3 before = Vec3::Zero();
         for (int i = 0; i < steps; ++i) {
-            if (i == steps - last_steps) before = find_force_on_held(world_, first_hand(world_));
+            if (i == steps - last_steps) before = find_force_on_held(world_, hand_at(world_, 0));
             (void)relax_mobile(world_, {}).value();
         }
-        const Vec3 force = find_force_on_held(world_, first_hand(world_));
+        const Vec3 force = find_force_on_held(world_, hand_at(world_, 0));
         return {force, (force - before).norm()};
     }
 
@@ -123,7 +123,7 @@ private:
         if (reference_) {
             const auto found = reference_->find_force(
                 world_.resource<TorsionState>(),
-                grip_of(world_, first_hand(world_)).anchor + model.molecule.place_angstrom);
+                grip_of(world_, hand_at(world_, 0)).anchor + model.molecule.place_angstrom);
             force = found.force;
             changes_pN_.push_back(1e12 * newton * found.change);
         } else {

@@ -44,7 +44,8 @@ public:
         const auto delay = static_cast<std::size_t>(servo_.delay_ticks);
         const double undamped = tick.sent_newton.x() - under_way_[(tick_ + size - delay) % size];
         ++tick_;
-        const double error = undamped - hand_force(world_.resource<Coupling>().laws.force, F_m);
+        const double error =
+            undamped - hand_force(coupling_of(world_, hand_at(world_, 0)).laws.force, F_m);
         squares_ += error * error;
         played_.readings.push_back(read_tick(tick));
         played_.readings.back().hand_N = tick.sent_newton.x();
@@ -87,18 +88,18 @@ AxisRun play_axis(const AxisCase& c) {
     EmulatedOmniSettings device = build_emulated_omni(scene, world);
     if (c.hand) device.hand = c.hand;
     EmulatedOmni omni(device);
-    ServoSettings servo = build_servo_settings(scene, world, omni.spec());
+    ServoSettings servo = build_servo_settings(scene, world, 0, omni.spec());
     if (c.cools) servo.safety.thermal_limit_newton = std::numeric_limits<double>::infinity();
     Watch watch(world, servo);
     const auto step = [&](const HandPose& hand, const ContactModel& felt) {
         (void)step_world(world, hand, felt);
-        return local_contact_of(world);
+        return contact_at(world, 0);
     };
     const auto on_tick = [&](const ServoTick& tick) { watch.add(tick); };
     const LockstepSettings settings{
         static_cast<std::uint64_t>(std::lround(scene.seconds * servo_rate_hz)),
         static_cast<std::uint64_t>(std::lround(world.resource<Clock>().period_s * servo_rate_hz))};
-    run_lockstep(settings, servo, omni, local_contact_of(world), step, on_tick);
+    run_lockstep(settings, servo, omni, contact_at(world, 0), step, on_tick);
     return watch.played();
 }
 

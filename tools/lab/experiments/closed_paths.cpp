@@ -67,7 +67,7 @@ std::vector<std::string> draw_closed_path(Draws& draws, bool turn, bool& in_plan
 class ClosedPathWatch {
 public:
     ClosedPathWatch(const SceneDescription& scene, const World& world, const DeviceSpec& device)
-        : servo_(build_servo_settings(scene, world, device)),
+        : servo_(build_servo_settings(scene, world, 0, device)),
           cap_N_per_m_(servo_.guarded.value_or(GuardedSettings{}).cap_N_per_m),
           law_(servo_.guarded.value_or(GuardedSettings{}), load_world(scene)),
           start_(law_.pose().place_angstrom),
@@ -168,7 +168,7 @@ void check_closed_paths(const ClosedPathOptions& options) {
             "closed-paths compares with guarded coupling; expected coupling.mode = \"guarded\"");
     }
     for (const MoleculeDescription& molecule : scene.molecules) {
-        if (molecule.name != scene.grab.molecule) continue;
+        if (molecule.name != scene.hands.front().grab.molecule) continue;
         const bool turns = molecule.motion == Motion::WithHandle;
         if (options.turn && !turns) {
             throw LoadError(scene.place_of("grab.molecule"),
@@ -185,7 +185,7 @@ void check_closed_paths(const ClosedPathOptions& options) {
 ClosedPathCost find_closed_path_cost(const ClosedPathOptions& options) {
     constexpr double pair_s = 1.9e-4;  // a pair on a path, on scenes/hiv
     const World world = load_world(read_scene(options.scene, options.settings));
-    const std::size_t held = held_range(world, first_hand(world)).count;
+    const std::size_t held = held_range(world, hand_at(world, 0)).count;
     const auto pairs =
         static_cast<double>(held * (world.resource<AtomTable>().positions.size() - held));
     return {pairs, pair_s * pairs};

@@ -15,7 +15,7 @@ namespace {
 constexpr double newton = units::newton_per_kcal_per_mol_angstrom;
 constexpr double newton_per_metre = units::newton_per_metre_per_kcal_per_mol_angstrom2;
 
-const Grip& first_grip(const World& world) noexcept { return grip_of(world, first_hand(world)); }
+const Grip& first_grip(const World& world) noexcept { return grip_of(world, hand_at(world, 0)); }
 
 }  // namespace
 

@@ -63,7 +63,7 @@ Impression feel_molecule(const ForcedChoiceOptions& options, CouplingMode mode, 
     World world = load_world(scene);
     move_grabbed(world, rest);
     scale_forces(ratio, world);
-    set_coupling(scene.coupling, world);  // for the contact model of this start
+    set_couplings(scene, world);  // for the contact model of this start
 
     const HandScript script = plan_probe(options.question, draws);
     EmulatedOmni device(build_study_device(scene, script));
@@ -73,7 +73,7 @@ Impression feel_molecule(const ForcedChoiceOptions& options, CouplingMode mode, 
     Impression impression;
     const auto step = [&](const HandPose& hand, const ContactModel& felt) {
         (void)step_world(world, hand, felt);
-        return local_contact_of(world);
+        return contact_at(world, 0);
     };
     const auto on_tick = [&](const ServoTick& tick) {
         felt_newton += (side * tick.sent_newton.x() - felt_newton) * servo_tick_s / skin_s;
@@ -87,8 +87,8 @@ Impression feel_molecule(const ForcedChoiceOptions& options, CouplingMode mode, 
         static_cast<std::uint64_t>(std::lround(script.path.back().time_s / servo_tick_s));
     const auto ticks_per_step =
         static_cast<std::uint64_t>(std::lround(world.resource<Clock>().period_s / servo_tick_s));
-    run_lockstep({ticks, ticks_per_step}, build_servo_settings(scene, world, device.spec()), device,
-                 local_contact_of(world), step, on_tick);
+    run_lockstep({ticks, ticks_per_step}, build_servo_settings(scene, world, 0, device.spec()),
+                 device, contact_at(world, 0), step, on_tick);
     return impression;
 }
 

@@ -48,7 +48,8 @@ std::vector<std::string> draw_scenario(Draws& draws) {
 // Work (J) that the static law, cut at the clamp, does on the hand while the molecule goes from one
 // distance (Å) to another: the integral of f(F) A_d.
 double find_static_work(const SceneDescription& scene, const World& world, double from, double to) {
-    const ServoSettings servo = build_servo_settings(scene, world);
+    const ServoSettings servo = build_servo_settings(scene, world, 0);
+    const CouplingLaws& laws = coupling_of(world, hand_at(world, 0)).laws;
     const double clamp_newton = servo.safety.clamp_newton;
     const auto steps = static_cast<int>(std::ceil(std::abs(to - from) / 1e-3)) + 1;
     const double width = (to - from) / steps;
@@ -56,8 +57,8 @@ double find_static_work(const SceneDescription& scene, const World& world, doubl
     for (int i = 0; i < steps; ++i) {
         const LineForce line = force_along_line_at(world, from + (i + 0.5) * width);
         const double F_m = line.force * units::newton_per_kcal_per_mol_angstrom;
-        const double A_d = gain_where(servo, world, line);
-        const double F_h = hand_force(world.resource<Coupling>().laws.force, F_m);
+        const double A_d = gain_where(servo, laws, line);
+        const double F_h = hand_force(laws.force, F_m);
         sum += std::clamp(F_h, -clamp_newton, clamp_newton) * A_d;
     }
     return sum * width * units::metre_per_angstrom;
@@ -135,7 +136,8 @@ std::vector<std::string> draw_hand(Draws& draws) {
 void check_scenarios(const ScenarioOptions& options) {
     const SceneDescription scene = read_scene(options.scene, options.settings);
     for (const MoleculeDescription& molecule : scene.molecules) {
-        if (molecule.name != scene.grab.molecule || molecule.motion == Motion::AlongX) continue;
+        if (molecule.name != scene.hands.front().grab.molecule || molecule.motion == Motion::AlongX)
+            continue;
         throw LoadError(scene.place_of("grab.molecule"),
                         "moves in space, where a path out and back does work; expected a molecule "
                         "with motion along-x (for space use palpa-lab closed-paths)");

@@ -52,7 +52,7 @@ StudyResult play_trial(const OperatorStudyOptions& options, const StudyTrial& tr
     SeekingOperator seeker(person, draws);
     const double wall = find_wall(world, result.start_angstrom);
     move_grabbed(world, result.start_angstrom);
-    set_coupling(scene.coupling, world);  // for the contact model of this start
+    set_couplings(scene, world);  // for the contact model of this start
 
     HandOrders orders;
     EmulatedOmniSettings omni = build_study_device(scene, {});
@@ -61,7 +61,7 @@ StudyResult play_trial(const OperatorStudyOptions& options, const StudyTrial& tr
     EmulatedOmni device(omni);
     const auto step = [&](const HandPose& hand, const ContactModel& felt) {
         (void)step_world(world, hand, felt);
-        return local_contact_of(world);
+        return contact_at(world, 0);
     };
     const auto on_tick = [&](const ServoTick& tick) {
         result.found_angstrom = tick.contact.molecule.place_angstrom.x();
@@ -73,8 +73,8 @@ StudyResult play_trial(const OperatorStudyOptions& options, const StudyTrial& tr
     const auto limit = static_cast<std::uint64_t>(std::ceil(options.limit_s / servo_tick_s));
     const auto ticks_per_step =
         static_cast<std::uint64_t>(std::lround(world.resource<Clock>().period_s / servo_tick_s));
-    run_lockstep({limit, ticks_per_step}, build_servo_settings(scene, world, device.spec()), device,
-                 local_contact_of(world), step, on_tick, [&] { return seeker.is_done(); });
+    run_lockstep({limit, ticks_per_step}, build_servo_settings(scene, world, 0, device.spec()),
+                 device, contact_at(world, 0), step, on_tick, [&] { return seeker.is_done(); });
     result.off_angstrom = result.found_angstrom - rest;
     result.is_finished = seeker.is_done();
     return result;

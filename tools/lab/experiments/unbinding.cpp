@@ -69,7 +69,7 @@ public:
 private:
     // The simulation has just answered the pose of the tick before, if it is its turn.
     void compare() {
-        const ContactModel& answer = local_contact_of(world_).model;
+        const ContactModel& answer = contact_at(world_, 0).model;
         constexpr std::uint64_t in_hold = 250;  // ticks after which a force is felt in full again
         if (since_clutch_ < in_hold) answered_.reset();
         if (since_clutch_ < in_hold || answer.time_s != pose_s_) return;
@@ -141,9 +141,9 @@ std::vector<std::vector<std::string>> list_choices(const UnbindingOptions& optio
 }
 
 bool is_to_leave(const SceneDescription& scene) {
-    return scene.hand.stroke == Stroke::Lead &&
+    return scene.hands.front().stroke == Stroke::Lead &&
            method_of(scene.statics) == RelaxMethod::SecondOrder &&
-           std::ranges::any_of(scene.hand.path, [](const PathPoint& point) {
+           std::ranges::any_of(scene.hands.front().path, [](const PathPoint& point) {
                return std::hypot(point.place[0], point.place[1], point.place[2]) >= 10;
            });
 }
@@ -200,7 +200,7 @@ UnbindingResult play_unbinding(const UnbindingOptions& options, std::vector<std:
     const SceneDescription scene = read_unbinding(options, settings);
     World world = load_world(scene);
     EmulatedOmni device(build_emulated_omni(scene, world));
-    UnbindingWatch watch(build_servo_settings(scene, world, device.spec()), world);
+    UnbindingWatch watch(build_servo_settings(scene, world, 0, device.spec()), world);
     const auto begin = std::chrono::steady_clock::now();
     const Summary summary = run_headless(
         scene, world, device, {}, nullptr, {}, {}, [&](const ServoTick& tick) { watch.add(tick); },
@@ -209,7 +209,7 @@ UnbindingResult play_unbinding(const UnbindingOptions& options, std::vector<std:
     UnbindingResult result = watch.result();
     result.settings = settings;
     if (watch.is_over() && summary.ripple) result.ripple_N = summary.ripple->rms;
-    result.grip = grip_names[static_cast<std::size_t>(scene.hand.grip)];
+    result.grip = grip_names[static_cast<std::size_t>(scene.hands.front().grip)];
     result.mode = coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)];
     result.period_ms = scene.period_ms;
     result.active = scene.statics.active;

@@ -1,0 +1,101 @@
+"""A scene of four hands, run as a person runs it: each hand with its device, grip and coupling, each with its columns."""
+import csv
+import json
+import math
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = os.environ["PALPA_PROGRAM"]
+SCENE = Path(os.environ["PALPA_ROOT"]) / "tests" / "data" / "four_hands" / "scene.toml"
+A_F, A_D = [1e9, 2e9, 1e9, 0.5e9], [0.05e9, 0.025e9, 0.05e9, 0.025e9]
+START = [(9, 0, 0), (-9, 0, 0), (0, 9, 0), (0, -9, 0)]
+
+
+def palpa(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+
+
+def vector(row, name, hand):
+    suffix = "" if hand == 0 else f"_{hand + 1}"
+    column, unit = name.rsplit("_", 1)
+    return [float(row[f"{column}_{axis}_{unit}{suffix}"]) for axis in "xyz"]
+
+
+class FourHands(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.temporary.cleanup)
+        cls.folder = Path(cls.temporary.name) / "recording"
+        result = palpa("run", SCENE, "--headless", "--record", cls.folder)
+        if result.returncode != 0:
+            raise AssertionError(result.stderr)
+        cls.output = result.stdout
+        with open(cls.folder / "trace.csv") as file:
+            cls.rows = list(csv.DictReader(file))
+        cls.summary = json.loads((cls.folder / "summary.json").read_text())
+
+    def test_each_hand_leads_its_own_water_by_its_own_gain(self):
+        for hand in range(4):
+            for row in self.rows[::100]:
+                handle = vector(row, "handle_m", hand)
+                place = vector(row, "molecule_angstrom", hand)
+                for axis in range(3):
+                    led = START[hand][axis] + 1e10 * handle[axis] / A_D[hand]
+                    # The molecule follows within a step of 1 ms.
+                    self.assertAlmostEqual(place[axis], led, delta=0.05, msg=f"hand {hand + 1} at {row['time_s']} s")
+            end = vector(self.rows[-1], "molecule_angstrom", hand)
+            self.assertLess(math.dist(end, (0, 0, 0)), 9 - 1.5)
+
+    def test_each_hand_feels_the_force_on_its_water_times_its_gain(self):
+        for hand in range(4):
+            row = self.rows[-1]  # at rest: delays do not matter
+            molecule = vector(row, "force_nN", hand)
+            felt = vector(row, "device_force_N", hand)
+            self.assertGreater(math.hypot(*molecule), 1e-3)
+            for axis in range(3):
+                self.assertAlmostEqual(felt[axis], A_F[hand] * 1e-9 * molecule[axis], delta=1e-4)
+
+    def test_reports_are_per_hand(self):
+        others = [self.summary] + [self.summary[f"hand_{hand}"] for hand in (2, 3, 4)]
+        for hand, report in enumerate(others):
+            self.assertEqual(report["coupling"]["A_f"], A_F[hand])
+            self.assertEqual(report["mode"], "4")
+            largest = max(math.hypot(*vector(row, "device_force_N", hand)) for row in self.rows)
+            self.assertAlmostEqual(report["largest_felt_N"], largest, delta=1e-9)
+        self.assertEqual([report["hand"] for report in others], ["medium", "medium", "medium", "firm"])
+        self.assertNotIn("hand_5", self.summary)
+
+    def test_the_recording_is_found_again_and_the_scene_is_written_with_four_tables(self):
+        result = palpa("replay", self.folder, "--verify")
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        session = (self.folder / "session.toml").read_text()
+        self.assertEqual(session.count("\n[[hand]]\n"), 4)
+        self.assertEqual(session.count("\n[hand.grab]\n"), 4)
+        self.assertEqual(session.count("\n[hand.coupling]\n"), 2)
+        self.assertEqual(session.count("\n[hand.device]\n"), 2)
+
+    def test_a_hand_alone_is_changed_by_its_number(self):
+        folder = Path(self.temporary.name) / "changed"
+        result = palpa("run", SCENE, "--headless", "--seconds", "1.5", "--record", folder, "--set", "hand[3].path=[[0.2,0],[0.3,0]]",
+                       "--set", "hand.release_s=0.1")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with open(folder / "trace.csv") as file:
+            last = list(csv.DictReader(file))[-1]
+        self.assertAlmostEqual(vector(last, "molecule_angstrom", 2)[1], 9, delta=0.1)
+        self.assertGreater(vector(last, "molecule_angstrom", 3)[1], -7.5)
+
+    def test_what_is_wrong_names_the_hand(self):
+        for setting, message in [("hand[4].stroke=in", "'hand[4].stroke' is the text \"in\""),
+                                 ("hand[3].grab.molecule=north", "'hand[3].grab.molecule' is \"north\", which is not a molecule"),
+                                 ("hand[5].grip=firm", "'hand[5]' is none of the scene's hands; expected hand[1] to hand[4]")]:
+            result = palpa("run", SCENE, "--headless", "--set", setting)
+            self.assertEqual(result.returncode, 2, setting)
+            self.assertIn(message, result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
