@@ -124,7 +124,7 @@ void EmulatedOmni::write(const Vec3& force_newton) noexcept {
 
 void EmulatedOmni::show(const ContactModel& contact, const Vec3& /*waiting_m*/) noexcept {
     operator_.see({units::metre_per_angstrom * contact.molecule.place_angstrom,
-                   contact.displacement_gain, true_position_m(), contact.start});
+                   contact.displacement_gain, true_position_m(), contact.grip_number});
 }
 
 bool EmulatedOmni::take_orders() noexcept {

@@ -199,8 +199,8 @@ DeviceCheck check_motors(const hd::Library& library) {
     const hd::Code error = first_error(library);
     const double hottest = *std::max_element(share.begin(), share.begin() + 6);
     if (error == hd::warm_motors || hottest >= 1) {
-        return {"motors", CheckOutcome::Failed, std::string(hd::words(hd::warm_motors).what),
-                std::string(hd::words(hd::warm_motors).remedy)};
+        return {"motors", CheckOutcome::Failed, std::string(hd::describe(hd::warm_motors).what),
+                std::string(hd::describe(hd::warm_motors).remedy)};
     }
     if (error != hd::success || !std::isfinite(hottest)) {
         return {"motors", CheckOutcome::Unknown, "the library does not report their temperature",
@@ -447,7 +447,7 @@ OpenedDevice open_haptics(const OpenHapticsSettings& settings, const DeviceReque
     hd::Code error = hd::success;
     const hd::Handle handle = find_device(library, settings.device_name, error);
     if (handle == hd::no_device) {
-        const hd::ErrorWords why = hd::words(error);
+        const hd::ErrorWords why = hd::describe(error);
         checks.push_back({"init", CheckOutcome::Failed,
                           fmt::format("{} (0x{:04x})", why.what, error), std::string(why.remedy)});
         return opened;

@@ -32,7 +32,7 @@ LibrarySearch find_library(const std::optional<std::filesystem::path>& path) {
     return search;
 }
 
-ErrorWords words(Code error) noexcept {
+ErrorWords describe(Code error) noexcept {
     switch (error) {
         case success:
             return {};

@@ -93,6 +93,6 @@ LibrarySearch find_library(const std::optional<std::filesystem::path>& path);
 struct ErrorWords {
     std::string_view what, remedy;
 };
-ErrorWords words(Code error) noexcept;
+ErrorWords describe(Code error) noexcept;
 
 }  // namespace palpa::hd

@@ -91,7 +91,7 @@ ScriptedHand::Wish ScriptedHand::step(double tick_s) noexcept {
 }
 
 void ScriptedHand::see(const Sight& sight) noexcept {
-    const bool holds_other = takes_anew_ && sight_ && sight_->start != sight.start;
+    const bool holds_other = takes_anew_ && sight_ && sight_->grip_number != sight.grip_number;
     if (!first_sight_ || holds_other) {
         first_sight_ = sight;
         takes_anew_ = false;

@@ -37,7 +37,7 @@ public:
         Vec3 molecule_m = Vec3::Zero();  // position of the molecule, any origin
         double displacement_gain = 0;    // handle metres per molecule metre
         Vec3 handle_m = Vec3::Zero();
-        std::uint32_t start = 0;  // start number of the contact model in use
+        std::uint32_t grip_number = 0;  // grip number of the contact model in use
     };
     void see(const Sight& sight) noexcept;
 

@@ -1,7 +1,7 @@
 #include "app/live_frame.h"
 
 #include "core/load_error.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 #include "simulation/select_in_world.h"
 #include "simulation/solver.h"
@@ -17,7 +17,7 @@ namespace {
 LiveHand show_hand(const World& world, Entity hand, const AtomDirectory& atoms) {
     const bool holds = world.find<Grip>(hand) != nullptr;
     return {held_range(world, hand), holds ? held_place(world, hand) : Vec3(Vec3::Zero()),
-            held_address(world, hand, atoms), contact_of(world, hand).answer.model};
+            held_address(world, hand, atoms), contact_of(world, hand).sent.model};
 }
 
 // Layers, labels and what is hidden that cannot be evaluated in this world.

@@ -140,7 +140,7 @@ void LiveSession::send(const Command& command) {
         } else if (std::holds_alternative<Reset>(command)) {
             ++order.restarts;
         } else if (const auto* const settings = std::get_if<LiveSettings>(&command)) {
-            if (bears_period(devices_[slot].device->spec(), settings->period_ms * 1e-3))
+            if (supports_period(devices_[slot].device->spec(), settings->period_ms * 1e-3))
                 order.granted_ticks = ticks_of(settings->period_ms);
         }
         if (devices_[slot].orders) devices_[slot].orders->post(order);
@@ -362,7 +362,7 @@ void LiveSession::run_simulation() {
                     device_changed_.notify_one();
                 }
             }
-            for (const Command& command : commands) obey(command);
+            for (const Command& command : commands) apply(command);
             answer();
             if (!commands.empty()) post_frame_if_wanted();
         }
@@ -394,7 +394,7 @@ void LiveSession::play(const LiveEvent& event) {
     journal_queue_.push(std::move(played), line_->posted());
 }
 
-void LiveSession::obey(const Command& command) {
+void LiveSession::apply(const Command& command) {
     if (const auto* const view = std::get_if<ViewSettings>(&command))
         return frame_builder_.show_as(*view);
     if (const auto* const order = std::get_if<PlaybackOrder>(&command))

@@ -95,7 +95,7 @@ private:
     void run_simulation();
     void run_recorder();
     void play(const LiveEvent& event);
-    void obey(const Command& command);
+    void apply(const Command& command);
     void make(const EditDescription& edit);
     void adopt_edit();
     // Calls a function on the simulation's thread between two steps, and waits for it.

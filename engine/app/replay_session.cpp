@@ -130,10 +130,10 @@ void ReplaySession::take_commands() {
         const std::lock_guard lock(mutex_);
         commands.swap(commands_);
     }
-    for (const Command& command : commands) obey(command);
+    for (const Command& command : commands) apply(command);
 }
 
-void ReplaySession::obey(const Command& command) {
+void ReplaySession::apply(const Command& command) {
     if (const auto* const view = std::get_if<ViewSettings>(&command)) {
         view_ = *view;
         frame_builder_->show_as(view_);

@@ -55,7 +55,7 @@ public:
 private:
     void run();
     void take_commands();
-    void obey(const Command& command);
+    void apply(const Command& command);
     void go_to(double at_s);
     void begin_anew();
     void play(std::size_t ticks);

@@ -120,7 +120,7 @@ private:
     void take_ticks();
     void take_input();
     void move_camera(const Input& input);
-    void heed_device(const Input& input);
+    void read_device_view(const Input& input);
     void post_pad(const Input& input);
     void move_hand(const Input& input);
     void move_hand_by_keys(const Input& input, double seconds);

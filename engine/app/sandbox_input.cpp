@@ -29,7 +29,7 @@ void Sandbox::take_input() {
     const Input& input = window_.poll();
     must_rebuild_ = must_rebuild_ || input.resized;
     if (input.rescaled) shell_.restart_graphics();
-    heed_device(input);
+    read_device_view(input);
     if (options_.pads) post_pad(input);
     const auto types = [&] {
         return shell_.graphics()->ui.wants_keys() || selection_panel_.awaits_keys();
@@ -112,7 +112,7 @@ void Sandbox::post_pad(const Input& input) {
 }
 
 // Input that comes without focus is meant for others.
-void Sandbox::heed_device(const Input& input) {
+void Sandbox::read_device_view(const Input& input) {
     for (const WindowHand& each : hands_) each.device->attend(input.focused);
     constexpr double longest_s = 0.1;  // after a pause nothing leaps
     const double passed_s = std::chrono::duration<double>(SteadyClock::now() - heeded_).count();

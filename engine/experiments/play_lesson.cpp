@@ -15,7 +15,7 @@
 #include "session/run_headless.h"
 #include "session/undo_history.h"
 #include "simulation/edit.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/step.h"
 
@@ -101,7 +101,7 @@ public:
     Device& device() noexcept override { return mouse_; }
     void go_on(const std::vector<HandWaypoint>& path, bool takes_anew) override {
         const Vec3 now = takes_anew ? Vec3::Zero() : find_target(path_, time_s_).place_m;
-        if (takes_anew) start_.reset();
+        if (takes_anew) grip_number_.reset();
         path_ = {{time_s_, now.x(), now.y(), now.z()}};
         for (HandWaypoint point : path) {
             point.time_s += time_s_;
@@ -112,8 +112,9 @@ public:
         constexpr double waits_from_angstrom = 1;
         const MoleculePose& molecule = tick.contact.molecule;
         if (tick.contact.is_still) return;
-        if (!start_ || *start_ != tick.contact.start) first_angstrom_ = molecule.place_angstrom;
-        start_ = tick.contact.start;
+        if (!grip_number_ || *grip_number_ != tick.contact.grip_number)
+            first_angstrom_ = molecule.place_angstrom;
+        grip_number_ = tick.contact.grip_number;
         const auto goal = [&]() -> Vec3 {
             return first_angstrom_ +
                    units::angstrom_per_metre * find_target(path_, time_s_).place_m;
@@ -128,9 +129,9 @@ private:
     MouseHandle mouse_;
     MousePersonAtWindow person_;
     std::vector<HandWaypoint> path_{{}};
-    double time_s_ = 0;                   // on the path
-    std::optional<std::uint32_t> start_;  // of the contact model when it took hold
-    Vec3 first_angstrom_ = Vec3::Zero();  // place of the molecule then
+    double time_s_ = 0;                         // on the path
+    std::optional<std::uint32_t> grip_number_;  // of the contact model when it took hold
+    Vec3 first_angstrom_ = Vec3::Zero();        // place of the molecule then
 };
 
 std::unique_ptr<LessonHand> open_hand(const SceneDescription& scene, const World& world,

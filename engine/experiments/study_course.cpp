@@ -81,7 +81,8 @@ bool StudyCourse::press_key() {
 }
 
 void StudyCourse::add(const ServoTick& tick) {
-    const bool is_new = std::exchange(start_, tick.contact.start) != tick.contact.start;
+    const bool is_new =
+        std::exchange(grip_number_, tick.contact.grip_number) != tick.contact.grip_number;
     if (stage_ != Stage::Trial) return;
     const double distance = tick.contact.molecule.place_angstrom.x();
     if (!has_begun_ && is_new) {

@@ -53,8 +53,8 @@ private:
     Stage stage_ = Stage::Consent;
     StudyResult running_;
     std::vector<StudyResult> results_;
-    std::uint32_t start_ = 0;  // start number of the molecule in the ticks
-    bool has_begun_ = false;   // the trial has begun: the molecule is at its new start
+    std::uint32_t grip_number_ = 0;  // grip number of the molecule in the ticks
+    bool has_begun_ = false;         // the trial has begun: the molecule is at its new start
 };
 
 }  // namespace palpa

@@ -17,7 +17,7 @@
 #include "prepare/scene_of.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "statics/renewal.h"
 

@@ -20,9 +20,9 @@ struct HandPose {
     // Pose of the molecule in guarded coupling. In the other modes it is unset, and the simulation
     // moves the molecule by travel and turn.
     std::optional<MoleculePose> molecule = {};
-    std::uint32_t start = 0;   // start number of the contact model in use
-    std::uint64_t number = 0;  // number of the servo tick, from 1
-    bool is_clutched = false;  // the handle moves nothing
+    std::uint32_t grip_number = 0;  // grip number of the contact model in use
+    std::uint64_t number = 0;       // number of the servo tick, from 1
+    bool is_clutched = false;       // the handle moves nothing
 };
 
 // The result of a simulation step. It is one step old when it is felt: the paper's z^-1.

@@ -351,13 +351,15 @@ void take_local_contact(const GuardedSettings& settings, const LocalContactModel
                         GuardedState& state, LiveMolecules live) noexcept {
     const ContactModel& model = contact.model;
     const Vec3 felt = state.at_place.force_newton + state.blend_residual_newton;
-    const bool goes_on = state.is_placed && state.start == model.start && !model.is_still;
+    const bool goes_on =
+        state.is_placed && state.grip_number == model.grip_number && !model.is_still;
     if (!goes_on) {
         state.molecule = model.molecule;
         state.overtravel_m.setZero();
         state.waiting_m.setZero();
         state.stepped_m.setZero();
-        state.holds_another = state.is_placed && state.start != model.start && !model.is_still;
+        state.holds_another =
+            state.is_placed && state.grip_number != model.grip_number && !model.is_still;
         if (!state.holds_another) state.felt_newton.setZero();
         state.law_newton = state.felt_newton;
         state.law_blend_residual_newton.setZero();
@@ -369,7 +371,7 @@ void take_local_contact(const GuardedSettings& settings, const LocalContactModel
     state.interval_s = goes_on ? state.since_arrival_s : model.period_s;
     state.blend_s = model.relaxed ? std::max(state.interval_s, relaxed_blend_s) : state.interval_s;
     state.since_arrival_s = 0;
-    state.start = model.start;
+    state.grip_number = model.grip_number;
     state.is_placed = true;
 }
 

@@ -82,7 +82,7 @@ GuardedGain guarded_gain(const GuardedSettings& settings, const Vec3& force_newt
 // The state between two ticks.
 struct GuardedState {
     bool is_placed = false;
-    std::uint32_t start = 0;  // start number of the contact model
+    std::uint32_t grip_number = 0;  // grip number of the contact model
     MoleculePose molecule;
     Vec3 overtravel_m =
         Vec3::Zero();  // handle travel that the stop did not let the molecule follow

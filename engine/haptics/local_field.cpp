@@ -19,7 +19,7 @@ constexpr double newton_per_metre = units::newton_per_metre_per_kcal_per_mol_ang
 const MoleculePose& live_pose(const HeldField& held, LiveMolecules live) noexcept {
     if (held.hand >= live.size()) return held.then.pose;
     const std::optional<LiveMolecule>& now = live[held.hand];
-    return now && now->start == held.then.start ? now->pose : held.then.pose;
+    return now && now->grip_number == held.then.grip_number ? now->pose : held.then.pose;
 }
 
 // From one pose to another, of a molecule whose reference atom was at `pivot`.
@@ -70,7 +70,7 @@ LocalForce evaluate_tangent(const ContactModel& model, const LocalField& field,
     double nearer = moved.norm();
     for (const HeldField& held : field.held) {
         const Vec3 went = live_pose(held, live).place_angstrom - held.then.pose.place_angstrom;
-        result.force_newton += newton * (model.projector * (held.there.stiffness * went));
+        result.force_newton += newton * (model.projector * (held.at_step.stiffness * went));
         nearer += went.norm();
     }
     result.clearance_angstrom = std::max(0.0, model.clearance_angstrom - nearer);
@@ -121,7 +121,7 @@ LocalForce evaluate_frozen(const ContactModel& model, const LocalField& field,
     const Mat3& free = model.projector;
     const RigidMotion motion = motion_to(model, field, pose);
     const FrozenSum sum = evaluate_field(field, field.group, motion, live);
-    const FrozenSum there = sum_there(field);
+    const FrozenSum there = sum_at_step(field);
     LocalForce result;
     result.force_newton =
         model.force_newton + model.prediction_gain * newton * (free * (sum.force - there.force));
@@ -150,9 +150,9 @@ LocalForce evaluate_following(const ContactModel& model, const LocalField& field
     add_held(field, field.group, motion, live, now.sum);
     LocalForce result;
     result.force_newton =
-        newton * (free * (now.along - atoms.there.along + atoms.there.slope * by));
+        newton * (free * (now.along - atoms.at_step.along + atoms.at_step.slope * by));
     if (is_within)
-        result.slope_N_per_m = newton_per_metre * (free * (now.slope - atoms.there.slope) * free);
+        result.slope_N_per_m = newton_per_metre * (free * (now.slope - atoms.at_step.slope) * free);
     result.stiffness_N_per_m = newton_per_metre * (free * now.sum.stiffness * free);
     result.clearance_angstrom = std::max(0.0, now.sum.clearance);
     result.largest_newton = newton * now.sum.largest_force;
@@ -161,9 +161,9 @@ LocalForce evaluate_following(const ContactModel& model, const LocalField& field
 
 }  // namespace
 
-FrozenSum sum_there(const LocalField& field) noexcept {
-    FrozenSum there = field.there;
-    for (const HeldField& held : field.held) add(there, held.there);
+FrozenSum sum_at_step(const LocalField& field) noexcept {
+    FrozenSum there = field.at_step;
+    for (const HeldField& held : field.held) add(there, held.at_step);
     return there;
 }
 

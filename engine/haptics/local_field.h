@@ -62,15 +62,15 @@ struct ContactModel {
     // By which the force is predicted between steps, where the step answers by second order. What
     // keeps the loop stable and the molecule out of walls takes the frozen stiffness all the same.
     std::optional<RelaxedStiffness> relaxed = {};
-    std::uint32_t start = 0;   // a new number: the molecule was placed, not moved by the hand
-    bool is_still = false;     // paused: the hand has no force
-    std::uint64_t number = 0;  // number of the model in a live session
+    std::uint32_t grip_number = 0;  // a new number: the molecule was placed, not moved by the hand
+    bool is_still = false;          // paused: the hand has no force
+    std::uint64_t number = 0;       // number of the model in a live session
 };
 
 // The molecule of a hand at the position where the servo has moved it.
 struct LiveMolecule {
     MoleculePose pose;
-    std::uint32_t start = 0;  // start number of the hand's contact model
+    std::uint32_t grip_number = 0;  // grip number of the hand's contact model
 };
 
 // By hand slot; unset for a hand whose molecule the servo does not move.
@@ -82,7 +82,7 @@ struct HeldField {
     LiveMolecule then;          // its pose at the step, relative to something fixed
     Vec3 pivot = Vec3::Zero();  // Å, its reference atom at the step, about which it turns
     FrozenField frozen;         // field of its atoms; may be empty if the local field has no atoms
-    FrozenSum there;            // force of that field on the group at the step
+    FrozenSum at_step;          // force of that field on the group at the step
     // -d(force on the group)/d(place of this molecule) where everything follows, N/m.
     Mat3 relaxed_N_per_m = Mat3::Zero();
 };
@@ -90,7 +90,7 @@ struct HeldField {
 // How atoms follow the motion of the hand, and the field at their positions of the step.
 struct FollowingAtoms {
     FollowingPoints points;  // motion of the group's and the environment's atoms
-    FollowingSum there;
+    FollowingSum at_step;
     // Å of the hand's way, beyond which the farthest of them has left the region where all this
     // holds: what they add then stays as it is.
     double reach_angstrom = 0;
@@ -105,7 +105,7 @@ struct LocalField {
     Vec3 centre = Vec3::Zero();  // its centre of mass, Å
     Vec3 pivot = Vec3::Zero();   // its reference atom, about which it turns, Å
     double radius = 0;           // distance of its farthest atom from there, Å
-    FrozenSum there;             // force of the field on the group at the step
+    FrozenSum at_step;           // force of the field on the group at the step
     bool has_atoms = false;
     std::vector<HeldField> held;  // one for each other hand with a molecule nearby
     // Where everything follows, and the handle turns nothing.
@@ -113,7 +113,7 @@ struct LocalField {
 };
 
 // The total force of a local field on the group at the step.
-FrozenSum sum_there(const LocalField& field) noexcept;
+FrozenSum sum_at_step(const LocalField& field) noexcept;
 
 // The same on a group elsewhere, moved by `motion` besides, with what other hands hold where `live`
 // has it.

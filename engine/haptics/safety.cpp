@@ -232,7 +232,7 @@ SafetyState::SafetyState() noexcept {
     for (const std::uint32_t tick_us : ticks_us) ticks_sum_us += tick_us;
 }
 
-bool bears_period(const DeviceSpec& device, double period_s) noexcept {
+bool supports_period(const DeviceSpec& device, double period_s) noexcept {
     const bool gives_force = device.is_real && device.peak_force_newton > 0;
     return !gives_force || period_s <= longest_real_period_s;
 }
@@ -248,7 +248,7 @@ void limit_to(const DeviceSpec& device, SafetySettings& settings) noexcept {
         settings.thermal_limit_newton = device.continuous_force_newton;
 }
 
-std::string_view words(SafetyStage stage) noexcept {
+std::string_view describe(SafetyStage stage) noexcept {
     switch (stage) {
         case SafetyStage::None:
             return "";

@@ -79,7 +79,7 @@ struct SafetySettings {
 inline constexpr double longest_real_period_s = 1;
 
 // Whether the device may be used with this period.
-bool bears_period(const DeviceSpec& device, double period_s) noexcept;
+bool supports_period(const DeviceSpec& device, double period_s) noexcept;
 
 // Takes over what a device says of itself; nothing beside what the settings allow already. Without
 // motors none can be seen to hang in its readings, and none grows hot.
@@ -107,7 +107,7 @@ enum class SafetyStage {
 };
 
 // What happened and what the user can do, for the window; empty for None.
-std::string_view words(SafetyStage stage) noexcept;
+std::string_view describe(SafetyStage stage) noexcept;
 
 // The input of one tick.
 struct SafetyInput {

@@ -73,7 +73,7 @@ void follow_safety(const SafetySettings& settings, ServoState& state) noexcept {
 std::optional<LiveMolecule> live_molecule(const ServoState& state) noexcept {
     const GuardedState& guarded = state.guarded;
     if (!guarded.is_placed) return {};
-    return LiveMolecule{guarded.molecule, guarded.start};
+    return LiveMolecule{guarded.molecule, guarded.grip_number};
 }
 
 // With the contact model that was taken last; `is_new`: for this tick.
@@ -126,7 +126,7 @@ ServoTick step_with_taken(const ServoSettings& settings, ServoState& state, Exch
         tick.contact = touch_now(state.contact, guarded, done);
         if (guarded.is_placed) {
             pose.molecule = guarded.molecule;
-            pose.start = guarded.start;
+            pose.grip_number = guarded.grip_number;
         }
     } else {
         const Vec3 velocity = filtered_velocity(state.guarded.handle_m_per_s, handle.moved_m);

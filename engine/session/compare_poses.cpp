@@ -2,7 +2,7 @@
 
 #include "math/superpose.h"
 #include "simulation/components.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/molecules.h"
 #include "simulation/resources.h"
 

@@ -3,7 +3,7 @@
 #include "core/load_error.h"
 #include "core/wall_clock.h"
 #include "molecule/atoms.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
 #include "simulation/systems/pull_by_clients.h"
@@ -39,7 +39,7 @@ ImdServerOptions build_server_options(const ServeOptions& options, const World& 
 double find_potential(const World& world) {
     return has_mobile(world)
                ? find_energy(world)
-               : contact_of(world, hand_at(world, 0)).answer.model.potential_kcal_per_mol;
+               : contact_of(world, hand_at(world, 0)).sent.model.potential_kcal_per_mol;
 }
 
 ImdFrame build_imd_frame(const World& world) {

@@ -5,7 +5,7 @@
 #include "math/angles.h"
 #include "molecule/measure.h"
 #include "molecule/select.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/select_in_world.h"
 #include "view/hydrogen_bonds.h"
 
@@ -129,10 +129,11 @@ void LessonMeter::add_work(const World& world) {
         last_.reset();
         return;
     }
-    const ContactModel& contact = contact_of(world, hand).answer.model;
+    const ContactModel& contact = contact_of(world, hand).sent.model;
     const Pull now{contact.molecule.place_angstrom,
-                   contact.force_newton / units::newton_per_kcal_per_mol_angstrom, contact.start};
-    if (last_ && last_->start == now.start)
+                   contact.force_newton / units::newton_per_kcal_per_mol_angstrom,
+                   contact.grip_number};
+    if (last_ && last_->grip_number == now.grip_number)
         work_ -= 0.5 * (last_->force + now.force).dot(now.place - last_->place);
     last_ = now;
 }

@@ -60,7 +60,7 @@ private:
     std::optional<std::size_t> map_step_;
     struct Pull {
         Vec3 place, force;  // Å, kcal/mol/Å
-        std::uint32_t start = 0;
+        std::uint32_t grip_number = 0;
     };
     std::optional<Pull> last_;
     double work_ = 0;  // kcal/mol

@@ -5,7 +5,7 @@
 #include "session/run_headless.h"
 #include "simulation/coupling.h"
 #include "simulation/edit.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/playback.h"
@@ -36,7 +36,7 @@ void set_period(const SceneDescription& scene, World& world) {
     const double period_s = scene.period_ms * 1e-3;
     world.write<Clock>().period_s = period_s;
     world.write_each<Contact>(
-        [&](Entity, Contact& contact) { contact.answer.model.period_s = period_s; });
+        [&](Entity, Contact& contact) { contact.sent.model.period_s = period_s; });
 }
 
 // No step waits for a renewal of second order. Where forces must be exact by another method, real
@@ -97,7 +97,7 @@ void LiveSimulation::play(const LiveEvent& event, std::span<const HandPose> pose
 void LiveSimulation::play(const PublishEvent& /*event*/) {
     const std::vector<Entity> hands = find_hands(world_);
     for (std::size_t slot = 0; slot < devices_.size(); ++slot)
-        post(slot, contact_of(world_, hands[slot]).answer);
+        post(slot, contact_of(world_, hands[slot]).sent);
 }
 
 void LiveSimulation::play(const StepEvent& event) {
@@ -122,13 +122,13 @@ void LiveSimulation::play(const HoldEvent& /*event*/) {
     const std::vector<Entity> hands = find_hands(world_);
     for (std::size_t slot = 0; slot < devices_.size(); ++slot) {
         take_hold(world_, hands[slot], poses_[slot]);
-        post(slot, without_force(contact_of(world_, hands[slot]).answer));
+        post(slot, without_force(contact_of(world_, hands[slot]).sent));
     }
 }
 
 void LiveSimulation::play(const CommandEvent& event) {
     if (const auto* const settings = std::get_if<LiveSettings>(&event.command)) {
-        obey(*settings);
+        apply(*settings);
     } else if (const auto* const additions = std::get_if<ViewAdditions>(&event.command)) {
         if (!undoes_edits_alone_) history_.note_additions(additions_);
         additions_ = *additions;
@@ -136,13 +136,13 @@ void LiveSimulation::play(const CommandEvent& event) {
     } else if (const auto* const lead = std::get_if<HandLead>(&event.command)) {
         if (lead->hand < leads_.size()) leads_[lead->hand] = lead->leads;
     } else if (const auto* const pause = std::get_if<Pause>(&event.command)) {
-        obey(*pause);
+        apply(*pause);
     } else if (std::holds_alternative<StepOnce>(event.command)) {
         readout_.paused = true;
         pause_engine(world_, true);
         post_orders();
     } else if (const auto* const anew = std::get_if<Reset>(&event.command)) {
-        obey(*anew);
+        apply(*anew);
     } else if (const auto* const pull = std::get_if<ClientPull>(&event.command)) {
         pull_ = *pull;
     } else if (const auto* const change = std::get_if<EditDescription>(&event.command)) {
@@ -159,7 +159,7 @@ void LiveSimulation::play(const DeviceEvent& event) {
     post_orders();  // or it would take one that was meant for the device before
 }
 
-void LiveSimulation::obey(const LiveSettings& settings) {
+void LiveSimulation::apply(const LiveSettings& settings) {
     const LiveSettings before = choices().settings;
     set(settings);
     if (!undoes_edits_alone_)
@@ -188,14 +188,14 @@ void LiveSimulation::set(const LiveSettings& settings) {
     post_orders();
 }
 
-void LiveSimulation::obey(const Pause& pause) {
+void LiveSimulation::apply(const Pause& pause) {
     if (!all_stand_still()) play(HoldEvent{});  // not what was travelled since the last look
     readout_.paused = pause.paused;
     pause_engine(world_, pause.paused);
     post_orders();
 }
 
-void LiveSimulation::obey(const Reset& reset) {
+void LiveSimulation::apply(const Reset& reset) {
     ++readout_.resets;
     if (!places_atoms(world_)) {
         readout_.problem = "reset is not possible: a remote engine moves the atoms";
@@ -370,7 +370,7 @@ void LiveSimulation::publish_edit(bool settles) {
     if (!readout_.paused) return play(PublishEvent{});
     const std::vector<Entity> hands = find_hands(world_);
     for (std::size_t slot = 0; slot < devices_.size(); ++slot)
-        felt_[slot] = contact_of(world_, hands[slot]).answer.model;
+        felt_[slot] = contact_of(world_, hands[slot]).sent.model;
 }
 
 void LiveSimulation::follow_unbinding() {
@@ -393,7 +393,7 @@ std::optional<UnbindingPath> LiveSimulation::unbinding() const {
 std::vector<std::uint32_t> LiveSimulation::list_starts() const {
     std::vector<std::uint32_t> starts;
     for (const Entity hand : find_hands(world_))
-        starts.push_back(contact_of(world_, hand).answer.model.start);
+        starts.push_back(contact_of(world_, hand).sent.model.grip_number);
     return starts;
 }
 
@@ -401,7 +401,7 @@ void LiveSimulation::take_hold_anew(std::span<const std::uint32_t> last_starts) 
     ++restarts_;
     const std::vector<Entity> hands = find_hands(world_);
     for (std::size_t slot = 0; slot < hands.size(); ++slot)
-        world_.write<Contact>(hands[slot])->answer.model.start = last_starts[slot] + 1;
+        world_.write<Contact>(hands[slot])->sent.model.grip_number = last_starts[slot] + 1;
     play(HoldEvent{});
 }
 

@@ -94,10 +94,10 @@ private:
     void play(const CommandEvent& event);
     void play(const DeviceEvent& event);
     void play(const AdoptEvent& event);
-    void obey(const LiveSettings& settings);
+    void apply(const LiveSettings& settings);
     void set(const LiveSettings& settings);
-    void obey(const Pause& pause);
-    void obey(const Reset& reset);
+    void apply(const Pause& pause);
+    void apply(const Reset& reset);
     void edit(const EditDescription& edit, bool settles);
     void refuse(const EditDescription& edit, std::string why);
     void publish_edit(bool settles);

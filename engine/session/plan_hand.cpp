@@ -3,7 +3,7 @@
 #include "core/load_error.h"
 #include "core/units.h"
 #include "session/run_headless.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
 

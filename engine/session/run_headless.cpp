@@ -11,7 +11,7 @@
 #include "session/undo_history.h"
 #include "simulation/components.h"
 #include "simulation/edit.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/playback.h"
 #include "simulation/remote_engine.h"
 #include "simulation/resources.h"
@@ -107,7 +107,7 @@ ServoSettings build_servo_settings(const SceneDescription& scene, const World& w
 }
 
 void check_period(const DeviceSpec& device, double period_s) {
-    if (bears_period(device, period_s)) return;
+    if (supports_period(device, period_s)) return;
     throw LoadError({"run.period_ms"},
                     fmt::format("is {:.6g} ms, so {} would render a force of this age; expected at "
                                 "most {:.6g} ms with a device that has motors",
@@ -320,8 +320,8 @@ std::vector<std::string> list_hand_warnings(const SceneDescription& scene, const
 
 void warn_of_outcome(Summary& summary) {
     if (summary.safety_share > 0) {
-        summary.warnings.push_back(fmt::format("for {:.1f} % of the time: {}",
-                                               100 * summary.safety_share, words(summary.gravest)));
+        summary.warnings.push_back(fmt::format(
+            "for {:.1f} % of the time: {}", 100 * summary.safety_share, describe(summary.gravest)));
     }
     if (summary.went_through) {
         summary.warnings.emplace_back("the hand pushed the molecule through the other one");
@@ -466,7 +466,7 @@ public:
             if (report.relaxed)
                 accuracy_[i].add_step(*report.relaxed, find_error_estimate(world, hands[i]));
             else
-                accuracy_[i].add_answer(contact_of(world, hands[i]).answer.model);
+                accuracy_[i].add_answer(contact_of(world, hands[i]).sent.model);
         }
         if (!report.relaxed) return;
         relaxation_.add(*report.relaxed, report.took_us);
@@ -525,7 +525,7 @@ std::vector<LockstepHand> build_hands(const SceneDescription& scene, const World
     for (std::size_t i = 0; i < devices.size(); ++i) {
         check_period(devices[i]->spec(), world.resource<Clock>().period_s);
         hands.push_back({*devices[i], build_servo_settings(scene, world, i, devices[i]->spec()),
-                         contact_of(world, entities[i]).answer});
+                         contact_of(world, entities[i]).sent});
     }
     return hands;
 }
@@ -547,7 +547,7 @@ namespace {
 std::vector<LocalContactModel> list_contacts(const World& world) {
     std::vector<LocalContactModel> contacts;
     world.each<Hand, Contact>(
-        [&](Entity, const Hand&, const Contact& contact) { contacts.push_back(contact.answer); });
+        [&](Entity, const Hand&, const Contact& contact) { contacts.push_back(contact.sent); });
     return contacts;
 }
 

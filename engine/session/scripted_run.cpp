@@ -7,7 +7,7 @@
 #include "session/reading.h"
 #include "simulation/atom_directory.h"
 #include "simulation/components.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/molecules.h"
 #include "simulation/resources.h"
 #include "simulation/select_in_world.h"
@@ -114,7 +114,7 @@ void ScriptedRun::before_step(World& world, const EditFunction& edit) {
 bool ScriptedRun::take_line(const std::string& line, World& world, const EditFunction& edit) {
     try {
         const std::optional<RunCommand> command = parse_run_command(line, scene_, place_);
-        return command && obey(*command, world, edit);
+        return command && apply(*command, world, edit);
     } catch (const LoadError& error) {
         has_refused_ = true;
         std::string what = error.what();
@@ -126,7 +126,7 @@ bool ScriptedRun::take_line(const std::string& line, World& world, const EditFun
     }
 }
 
-bool ScriptedRun::obey(const RunCommand& command, World& world, const EditFunction& edit) {
+bool ScriptedRun::apply(const RunCommand& command, World& world, const EditFunction& edit) {
     const auto visit = [&](const auto& action) {
         using Action = std::decay_t<decltype(action)>;
         if constexpr (std::is_same_v<Action, EditAction>) {

@@ -53,7 +53,7 @@ public:
 private:
     // True if the next step has to be made before more lines are read.
     bool take_line(const std::string& line, World& world, const EditFunction& edit);
-    bool obey(const RunCommand& command, World& world, const EditFunction& edit);
+    bool apply(const RunCommand& command, World& world, const EditFunction& edit);
     void pass(std::uint64_t steps) noexcept;
     void answer_ok(const World& world);
     void answer_reading(const World& world, const std::string& atoms);

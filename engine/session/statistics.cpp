@@ -57,8 +57,8 @@ void Statistics::add_place(const ContactModel& contact) {
     const Vec3& place = contact.molecule.place_angstrom;
     const double distance = place.norm();
     if (running_.ticks == 0) running_.closest_angstrom = distance;
-    if (running_.ticks == 0 || contact.start != start_) first_place_angstrom_ = place;
-    start_ = contact.start;
+    if (running_.ticks == 0 || contact.grip_number != grip_number_) first_place_angstrom_ = place;
+    grip_number_ = contact.grip_number;
     // What began that near was on no side.
     constexpr double on_top = 1;  // Å
     const bool beyond =

@@ -119,7 +119,7 @@ private:
     double tick_s_;
     Summary running_;
     Vec3 first_place_angstrom_ = Vec3::Zero();  // at the last start
-    std::uint32_t start_ = 0;
+    std::uint32_t grip_number_ = 0;
     std::uint64_t clamped_ticks_ = 0, safety_ticks_ = 0, stop_ticks_ = 0;
     std::optional<Vec3> counted_m_;  // handle position up to which the way is counted
     bool is_in_stroke_ = false;

@@ -1,7 +1,7 @@
 #include "session/unbinding_path.h"
 
 #include "simulation/components.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 
 #include <algorithm>

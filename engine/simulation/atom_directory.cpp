@@ -1,6 +1,6 @@
 #include "simulation/atom_directory.h"
 
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 
 #include "simulation/components.h"
 #include "simulation/resources.h"

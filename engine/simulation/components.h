@@ -112,7 +112,7 @@ struct NearAtoms {
 
 // The local contact model for the servo of a hand.
 struct Contact {
-    LocalContactModel answer;  // the last one sent to the hand
+    LocalContactModel sent;  // the last one sent to the servo
     NearAtoms near;
 
     std::size_t count_bytes() const noexcept { return 100 * near.atoms.size(); }  // about

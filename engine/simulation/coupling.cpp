@@ -2,7 +2,7 @@
 
 #include "core/load_error.h"
 #include "scene/read_scene.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
 #include "simulation/systems/publish_contact.h"
@@ -104,10 +104,10 @@ void renew_contacts(World& world) {
     for (const Entity hand : find_hands(world)) {
         if (!world.find<Grip>(hand)) continue;  // it feels nothing in any mode
         update_near(world, hand);
-        LocalContactModel& contact = world.write<Contact>(hand)->answer;
-        const std::uint32_t start = contact.model.start;
+        LocalContactModel& contact = world.write<Contact>(hand)->sent;
+        const std::uint32_t start = contact.model.grip_number;
         contact = build_local_contact(world, hand, {});
-        contact.model.start = start;
+        contact.model.grip_number = start;
     }
 }
 

@@ -22,7 +22,7 @@ void keep_clock_and_devices(const World& world, World& other) {
         if (Hand* const held = other.write<Hand>(entity)) *held = hand;
         const Contact* const now = world.find<Contact>(entity);
         Contact* const then = other.write<Contact>(entity);
-        if (now && then) then->answer.model.start = now->answer.model.start + 1;
+        if (now && then) then->sent.model.grip_number = now->sent.model.grip_number + 1;
     });
     other.write<Clock>() = world.resource<Clock>();
     carry_playback(world, other);

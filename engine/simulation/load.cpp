@@ -13,7 +13,7 @@
 #include "simulation/bonded_terms.h"
 #include "simulation/components.h"
 #include "simulation/coupling.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/mechanics.h"
 #include "simulation/molecules.h"
 #include "simulation/named_parts.h"

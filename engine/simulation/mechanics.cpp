@@ -3,7 +3,7 @@
 #include "core/load_error.h"
 #include "simulation/bonded_terms.h"
 #include "simulation/coupling.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/region.h"
 #include "simulation/solver.h"
 #include "simulation/systems/gather_springs.h"

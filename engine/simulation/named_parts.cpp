@@ -1,6 +1,6 @@
 #include "simulation/named_parts.h"
 
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/molecules.h"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include "core/interrupt.h"
 #include "core/units.h"
 #include "simulation/coupling.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/second_order.h"
 
 #include <algorithm>
@@ -293,13 +293,13 @@ void before_step(World& world, PaperStep& paper, const StepInput& input) {
     std::vector<std::optional<LiveMolecule>> live;
     for (const HandPose& hand : input.hands) {
         live.emplace_back();
-        if (hand.molecule) live.back() = {*hand.molecule, hand.start};
+        if (hand.molecule) live.back() = {*hand.molecule, hand.grip_number};
     }
     const std::vector<Entity> hands = find_hands(world);
     for (std::size_t slot = 0; slot < input.hands.size(); ++slot) {
         const std::optional<MoleculePose>& molecule = input.hands[slot].molecule;
         if (!molecule || !world.find<Grip>(hands[slot])) continue;
-        const LocalContactModel& contact = contact_of(world, hands[slot]).answer;
+        const LocalContactModel& contact = contact_of(world, hands[slot]).sent;
         paper.rendered[slot] =
             evaluate_local(contact.model, contact.field, *molecule, live).force_newton /
             units::newton_per_kcal_per_mol_angstrom;

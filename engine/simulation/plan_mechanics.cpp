@@ -4,7 +4,7 @@
 #include "charmm/cut_topology.h"
 #include "core/load_error.h"
 #include "simulation/bonded_terms.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/mobile_joints.h"
 #include "simulation/region.h"
 #include "simulation/systems/gather_springs.h"

@@ -1,6 +1,6 @@
 #include "simulation/probe.h"
 
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 
 #include <algorithm>
 #include <cmath>

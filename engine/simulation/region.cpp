@@ -1,6 +1,6 @@
 #include "simulation/region.h"
 
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 
 #include <algorithm>

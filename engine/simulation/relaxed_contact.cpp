@@ -2,7 +2,7 @@
 
 #include "core/units.h"
 #include "math/eigenvectors.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 
 #include <algorithm>
@@ -158,8 +158,8 @@ std::optional<FollowingAtoms> find_following(const World& world, const SecondOrd
     // Not farther for fast hands: atoms that follow linearly so far come on each other.
     following.reach_angstrom = second.settings.farthest / farthest;
     following.memory = build_following_memory(field.frozen);
-    following.there = evaluate_following_field(field.frozen, field.group, following.points,
-                                               Vec3::Zero(), following.memory);
+    following.at_step = evaluate_following_field(field.frozen, field.group, following.points,
+                                                 Vec3::Zero(), following.memory);
     return following;
 }
 

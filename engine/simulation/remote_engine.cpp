@@ -10,7 +10,7 @@
 #include "formats/psf.h"
 #include "molecule/element.h"
 #include "scene/find_scene.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
 #include "simulation/sources.h"

@@ -2,7 +2,7 @@
 
 #include "core/units.h"
 #include "simulation/coupling.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/systems/gather_springs.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "simulation/select_in_world.h"
 
 #include "simulation/components.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include "core/load_error.h"
 #include "core/units.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/solvent.h"
 #include "simulation/systems/follow_engine.h"
 #include "simulation/systems/gather_springs.h"

@@ -40,9 +40,9 @@ void go_back(World& world) {
     world.set_resource(failed.resource<StepReport>());
     carry_playback(failed, world);
     failed.each<Contact>([&](Entity hand, const Contact& contact) {
-        const Vec3& force = contact.answer.model.force_newton;
+        const Vec3& force = contact.sent.model.force_newton;
         if (force.allFinite() || !world.find<Contact>(hand)) return;
-        world.write<Contact>(hand)->answer.model.force_newton = force;
+        world.write<Contact>(hand)->sent.model.force_newton = force;
     });
 }
 

@@ -5,7 +5,7 @@
 #include "haptics/hand.h"
 #include "session/run_headless.h"
 #include "simulation/coupling.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "ui/layout.h"
 #include "ui/legend_panel.h"
@@ -359,9 +359,9 @@ void Overlay::draw_warnings(const Readout& readout, const OverlayStatus& status)
             "a force was not finite, so the force is off until you reset the scene (R)"));
     const bool feels = readout.holds_something && !stopped_;
     if (reason_ != SafetyStage::None && feels)
-        warnings.emplace_back(translated(words(reason_).data()));
+        warnings.emplace_back(translated(describe(reason_).data()));
     if (stage_ >= SafetyStage::ThermalLimit && stage_ != reason_ && feels)
-        warnings.emplace_back(translated(words(stage_).data()));
+        warnings.emplace_back(translated(describe(stage_).data()));
     warn(shaking_for_s_, is_shaking(readout), [&] {
         return format_translated(
             "this setting vibrates: K > B/(1.5 T_s). This hand is stable up to {:.3g} N/m at T_s = "

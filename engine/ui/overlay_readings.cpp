@@ -3,7 +3,7 @@
 #include "haptics/gains.h"
 #include "haptics/hand.h"
 #include "simulation/coupling.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "ui/layout.h"
 #include "ui/overlay.h"

@@ -4,7 +4,7 @@
 #include "math/angles.h"
 #include "molecule/hydropathy.h"
 #include "simulation/components.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
 #include "statics/joint_answers.h"

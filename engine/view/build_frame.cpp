@@ -3,7 +3,7 @@
 #include "molecule/residue_kinds.h"
 #include "molecule/select.h"
 #include "simulation/components.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
 #include "simulation/select_in_world.h"

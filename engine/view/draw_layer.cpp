@@ -3,7 +3,7 @@
 #include "molecule/element.h"
 #include "molecule/residue_kinds.h"
 #include "molecule/surface/potential.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 #include "view/build_frame.h"
 #include "view/elements.h"

@@ -2,7 +2,7 @@
 
 #include "math/angles.h"
 #include "simulation/components.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include "math/vec.h"
 #include "render/frame_scene.h"
 #include "scene/choices.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "view/pocket.h"
 #include "view/signs.h"
 

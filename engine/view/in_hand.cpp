@@ -1,6 +1,6 @@
 #include "view/in_hand.h"
 
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,7 +1,7 @@
 #include "view/past.h"
 
 #include "simulation/components.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/probe.h"
 #include "simulation/remote_engine.h"
 #include "simulation/resources.h"

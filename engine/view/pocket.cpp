@@ -3,7 +3,7 @@
 #include "molecule/atoms.h"
 #include "molecule/point_grid.h"
 #include "simulation/components.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "view/in_hand.h"
 
 #include <algorithm>

@@ -325,7 +325,7 @@ TEST_CASE("a reset forgets edits, and another start is never one of before", "[a
     const auto send = [&](EditAction action) {
         live.session.send(EditDescription{0, 0, std::move(action), {"not done"}});
     };
-    const auto start = [&] { return live.frame.readout.contact.start; };
+    const auto start = [&] { return live.frame.readout.contact.grip_number; };
     std::uint32_t last = start();
     for (const char* const name : {"fixed", "moved", "fixed"}) {
         send(TakeEdit{name});

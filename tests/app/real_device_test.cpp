@@ -7,7 +7,7 @@
 #include "devices/played_handle.h"
 #include "haptics/safety.h"
 #include "session/run_headless.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "tests/app/virtual_clock.h"
 #include "tests/support/water_scene.h"

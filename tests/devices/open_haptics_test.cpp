@@ -435,14 +435,14 @@ TEST_CASE("every documented error has words and a remedy", "[devices][open-hapti
                                 hd::already_initiated, hd::comm_error, hd::comm_config_error,
                                 hd::timer_error, hd::bad_handle, hd::invalid_licence}) {
         CAPTURE(code);
-        const hd::ErrorWords words = hd::words(code);
+        const hd::ErrorWords words = hd::describe(code);
         CHECK_FALSE(words.remedy.empty());
         CHECK(said.insert(std::string(words.what)).second);
     }
     for (const hd::Code code : {hd::invalid_enum, hd::illegal_begin, hd::scheduler_full, 0x999U}) {
-        CHECK_FALSE(hd::words(code).what.empty());
+        CHECK_FALSE(hd::describe(code).what.empty());
     }
-    CHECK(hd::words(hd::success).what.empty());
+    CHECK(hd::describe(hd::success).what.empty());
 }
 
 TEST_CASE("20,000 transforms of random bits give finite readings or none",

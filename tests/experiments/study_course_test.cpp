@@ -19,7 +19,7 @@ constexpr std::array two_modes{CouplingMode::ConstantForceConstantDisplacement,
 // Plays ticks with the molecule at one distance, put there by the n-th start.
 void play(StudyCourse& course, std::uint32_t start, double distance, int ticks) {
     ServoTick tick;
-    tick.contact.start = start;
+    tick.contact.grip_number = start;
     tick.contact.molecule.place_angstrom = Vec3(distance, 0, 0);
     for (int i = 0; i < ticks; ++i) course.add(tick);
 }

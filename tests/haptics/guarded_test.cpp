@@ -47,7 +47,7 @@ struct Pair {
         contact.field.centre = Vec3(x, 0, 0);
         contact.field.frozen =
             build_frozen_field(group(contact.field.group), environment(), {coulomb});
-        contact.field.there = evaluate_frozen_field(contact.field.frozen, contact.field.group);
+        contact.field.at_step = evaluate_frozen_field(contact.field.frozen, contact.field.group);
         contact.field.has_atoms = true;
         return contact;
     }
@@ -536,7 +536,7 @@ TEST_CASE("a hand that takes another molecule feels no jump", "[haptics][guarded
     REQUIRE(guarded.state.overtravel_m.norm() > 0.05);
 
     LocalContactModel other = pair.contact(4.2);
-    other.model.start = 1;
+    other.model.grip_number = 1;
     guarded.contact = other;
     take_local_contact(guarded.settings, other, guarded.state);
     const double wanted = hand_force(guarded.settings.force_law, pair.force(4.2));
@@ -641,7 +641,7 @@ TEST_CASE("a start anew forgets a force that was no number", "[haptics][guarded]
     CHECK_FALSE(guarded.move(Vec3::Zero()).hand_newton.allFinite());
 
     LocalContactModel anew = pair.contact(4);
-    anew.model.start = 1;
+    anew.model.grip_number = 1;
     ++guarded.settings.revision;
     guarded.contact = anew;
     take_local_contact(guarded.settings, anew, guarded.state);

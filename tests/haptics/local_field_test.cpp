@@ -135,7 +135,7 @@ TEST_CASE(
         evaluate_local(contact.model, contact.field, now[0], test::live_at(now)).force_newton;
     test::LiveArray unknown = test::live_at(now), anew = test::live_at(now);
     unknown[1].reset();
-    anew[1]->start = 1;
+    anew[1]->grip_number = 1;
     now[1] = then[1];
     const Vec3 expected = pair.newton(0, now);
     REQUIRE((live - expected).norm() > 0.01 * expected.norm());
@@ -194,8 +194,8 @@ struct FollowedWater {
         FollowingAtoms atoms;
         atoms.points = build_following_points(group, environment);
         atoms.memory = build_following_memory(contact.field.frozen);
-        atoms.there = evaluate_following_field(contact.field.frozen, contact.field.group,
-                                               atoms.points, Vec3::Zero(), atoms.memory);
+        atoms.at_step = evaluate_following_field(contact.field.frozen, contact.field.group,
+                                                 atoms.points, Vec3::Zero(), atoms.memory);
         atoms.reach_angstrom = 1;
         contact.field.following = atoms;
     }
@@ -220,11 +220,11 @@ TEST_CASE(
         c.follow(std::vector<Mat3>(3, Mat3::Identity()), std::vector<Mat3>(3, Mat3::Zero()));
         c.contact.model.relaxed.emplace();
         c.contact.model.relaxed->matrix.bottomRightCorner<3, 3>() =
-            stiffness_unit * c.contact.field.there.stiffness;
+            stiffness_unit * c.contact.field.at_step.stiffness;
         const LocalForce following = c.at(by);
 
-        const double size =
-            c.contact.field.there.stiffness.norm() * by.norm() + c.contact.field.there.force.norm();
+        const double size = c.contact.field.at_step.stiffness.norm() * by.norm() +
+                            c.contact.field.at_step.force.norm();
         CHECK((following.force_newton - frozen.force_newton).norm() < 1e-5 * force_unit * size);
         CHECK((following.slope_N_per_m - frozen.slope_N_per_m).norm() <
               1e-4 * (frozen.slope_N_per_m.norm() + stiffness_unit));

@@ -646,13 +646,13 @@ TEST_CASE("every stage has a sentence for the user", "[haptics][safety]") {
     std::set<std::string> sentences;
 
     for (int i = 1; i <= static_cast<int>(SafetyStage::NotFinite); ++i) {
-        const std::string sentence(words(static_cast<SafetyStage>(i)));
+        const std::string sentence(describe(static_cast<SafetyStage>(i)));
         INFO(i << ": " << sentence);
         REQUIRE_FALSE(sentence.empty());
         CHECK(sentence.back() == '.');
         CHECK(sentences.insert(sentence).second);
     }
-    CHECK(words(SafetyStage::None).empty());
+    CHECK(describe(SafetyStage::None).empty());
 }
 
 TEST_CASE("motors that are warm by their own word rest, and then stay below what they stand",

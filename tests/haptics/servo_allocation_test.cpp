@@ -63,7 +63,7 @@ LocalContactModel local_contact_of(std::size_t atoms) {
     contact.field.frozen =
         build_frozen_field(of(own), of(places), {units::charmm_coulomb_constant});
     contact.field.group = own;
-    contact.field.there = evaluate_frozen_field(contact.field.frozen, own);
+    contact.field.at_step = evaluate_frozen_field(contact.field.frozen, own);
     contact.field.has_atoms = atoms > 0;
     contact.model.period_s = 0.005;
     return contact;

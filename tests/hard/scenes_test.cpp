@@ -6,7 +6,7 @@
 #include "formats/structure.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/probe.h"

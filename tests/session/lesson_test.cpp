@@ -4,7 +4,7 @@
 #include "devices/emulated_omni.h"
 #include "session/lockstep.h"
 #include "session/run_headless.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/step.h"
 #include "tests/support/water_run.h"

@@ -4,7 +4,7 @@
 #include "haptics/device.h"
 #include "scene/read_scene.h"
 #include "session/undo_history.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 #include "tests/support/paths.h"
 

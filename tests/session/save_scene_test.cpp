@@ -4,7 +4,7 @@
 #include "core/text.h"
 #include "scene/read_scene.h"
 #include "simulation/edit.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/probe.h"

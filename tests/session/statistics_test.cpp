@@ -107,7 +107,7 @@ TEST_CASE("what is taken on the other side was not pushed through", "[session][s
     const auto add = [&](double distance, std::uint32_t start, bool is_still) {
         ServoTick tick;
         tick.contact.molecule.place_angstrom.x() = distance;
-        tick.contact.start = start;
+        tick.contact.grip_number = start;
         tick.contact.is_still = is_still;
         statistics.add(tick);
     };

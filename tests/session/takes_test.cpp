@@ -5,7 +5,7 @@
 #include "field/pair_field.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/molecules.h"
 #include "simulation/resources.h"
@@ -96,7 +96,7 @@ TakesRun run_takes(SceneDescription scene, const std::vector<EditDescription>& e
     }
     struct Last {
         Vec3 sent = Vec3::Zero();
-        std::optional<std::uint32_t> start;
+        std::optional<std::uint32_t> grip_number;
         bool held = true;
     };
     std::vector<Last> last(devices.size());
@@ -107,13 +107,13 @@ TakesRun run_takes(SceneDescription scene, const std::vector<EditDescription>& e
             const ServoTick& now = ticks[i];
             const Entity hand = find_hands(world)[i];
             const ContactModel& contact = now.contact;
-            if (last[i].start) {
+            if (last[i].grip_number) {
                 result.largest_step =
                     std::max(result.largest_step, (now.sent_newton - last[i].sent).norm());
             }
             result.largest_force = std::max(result.largest_force, now.sent_newton.norm());
             if (contact.is_still) ++result.let_go;
-            if (last[i].start && *last[i].start != contact.start) {
+            if (last[i].grip_number && *last[i].grip_number != contact.grip_number) {
                 NewHold change{static_cast<double>(tick) * servo_tick_s, i, last[i].sent};
                 change.holds = !contact.is_still;
                 change.held = last[i].held;
@@ -133,7 +133,7 @@ TakesRun run_takes(SceneDescription scene, const std::vector<EditDescription>& e
                 change.largest_step =
                     std::max(change.largest_step, (now.sent_newton - last[i].sent).norm());
             }
-            last[i] = {now.sent_newton, contact.start, !contact.is_still};
+            last[i] = {now.sent_newton, contact.grip_number, !contact.is_still};
         }
         ++tick;
     };

@@ -3,7 +3,7 @@
 #include "scene/read_scene.h"
 #include "session/lockstep.h"
 #include "session/run_headless.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/step.h"

@@ -1,7 +1,7 @@
 #include "session/unbinding_path.h"
 
 #include "scene/read_scene.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "tests/support/paths.h"
 

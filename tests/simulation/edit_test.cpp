@@ -7,7 +7,7 @@
 #include "field/pair_field.h"
 #include "formats/structure.h"
 #include "scene/read_scene.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/molecules.h"
@@ -149,15 +149,15 @@ TEST_CASE("what is in hand goes back to where it was at the start, whatever was 
     const AtomRange own = held_range(world, hand);
     const Vec3 others = world.resource<AtomTable>().positions[own.first == 0 ? own.count : 0];
     REQUIRE((world.resource<AtomTable>().positions[own.first] - start[own.first]).norm() > 0.1);
-    const std::uint32_t hold = contact_at(world, 0).model.start;
+    const std::uint32_t hold = contact_at(world, 0).model.grip_number;
 
     PutBackEdit{}.apply(world, 0);
 
     const std::vector<Vec3>& now = world.resource<AtomTable>().positions;
     for (std::uint32_t i = own.first; i < own.first + own.count; ++i)
         CHECK((now[i] - start[i]).norm() < 1e-9);
-    CHECK(now[own.first == 0 ? own.count : 0] == others);  // stays where it is
-    CHECK(contact_at(world, 0).model.start != hold);       // the servo takes hold anew
+    CHECK(now[own.first == 0 ? own.count : 0] == others);   // stays where it is
+    CHECK(contact_at(world, 0).model.grip_number != hold);  // the servo takes hold anew
     // The hand has it still, without a pull, and leads it from there.
     REQUIRE(world.find<Grip>(hand) != nullptr);
     const bool is_whole = what == "resting";
@@ -606,7 +606,7 @@ TEST_CASE("a reset is the scene as its file has it, and can be undone", "[simula
     history.apply(world, edit_of(CouplingEdit{{"mode=3"}}));
     (void)test::step_once(world, hand_after({0.3, 0.2, 0}), contact_at(world, 0).model);
     const std::string changed = world_bytes(world);
-    const std::uint32_t last = contact_at(world, 0).model.start;
+    const std::uint32_t last = contact_at(world, 0).model.grip_number;
 
     history.apply(world, edit_of(ResetEdit{}));
 
@@ -614,7 +614,7 @@ TEST_CASE("a reset is the scene as its file has it, and can be undone", "[simula
     CHECK(coupling_of(world, hand_at(world, 0)).description.mode == mode);
     // Time goes on, and the hand, which takes hold anew where its device is.
     CHECK(world.resource<Clock>().steps == 1);
-    CHECK(contact_at(world, 0).model.start > last);
+    CHECK(contact_at(world, 0).model.grip_number > last);
     const Vec3 place = held_place(world, hand_at(world, 0));
     (void)test::step_once(world, hand_after({0.3, 0.2, 0}), contact_at(world, 0).model);
     CHECK((held_place(world, hand_at(world, 0)) - place).norm() < 1e-12);
@@ -674,7 +674,7 @@ TEST_CASE(
     pose.molecule->place_angstrom += Vec3(0.2, -0.1, 0.3);
     const Quat turn(Eigen::AngleAxisd(0.4, Vec3(1, 2, -1).normalized()));
     pose.molecule->orientation = turn * start.orientation;
-    pose.start = contact_at(world, 0).model.start;
+    pose.grip_number = contact_at(world, 0).model.grip_number;
 
     REQUIRE(step_world(world, pose, contact_at(world, 0).model).finite);
 

@@ -2,7 +2,7 @@
 #include "core/units.h"
 #include "scene/read_scene.h"
 #include "simulation/edit.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/step.h"
@@ -128,7 +128,7 @@ TEST_CASE("two hands with rigid molecules in them have fast pairs, before and af
     for (std::size_t i = 0; i < 2; ++i) {
         poses[i].molecule = grip_of(world, hands[i]).pose;
         poses[i].molecule->place_angstrom += Vec3(0.1, 0.2 * static_cast<double>(i), 0);
-        felt[i] = contact_of(world, hands[i]).answer.model;
+        felt[i] = contact_of(world, hands[i]).sent.model;
     }
     REQUIRE(step_world(world, {poses, felt}).finite);
 

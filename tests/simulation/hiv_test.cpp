@@ -6,7 +6,7 @@
 #include "field/pair_field.h"
 #include "scene/read_scene.h"
 #include "simulation/components.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/step.h"

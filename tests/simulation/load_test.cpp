@@ -2,7 +2,7 @@
 #include "core/load_error.h"
 #include "simulation/components.h"
 #include "simulation/coupling.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/probe.h"
 #include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"

@@ -4,7 +4,7 @@
 
 #include "core/units.h"
 #include "scene/read_scene.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
@@ -29,7 +29,7 @@ using namespace palpa;
 namespace {
 
 LocalContactModel& write_local_contact(World& world) {
-    return world.write<Contact>(hand_at(world, 0))->answer;
+    return world.write<Contact>(hand_at(world, 0))->sent;
 }
 
 constexpr double dimer_distance = 2.6, dimer_step = 0.002;  // Å; the force is steep there
@@ -185,7 +185,7 @@ TEST_CASE("of few atoms the servo gets all of others, wherever what is held stan
         CHECK(field.frozen.environment.positions.size() == 6);
         CHECK(field.group.front() == grabbed_place(world));
         const Vec3 force = field_on_grabbed(world).force;
-        CHECK((field.there.force - force).norm() < 1e-5 * force.norm());
+        CHECK((field.at_step.force - force).norm() < 1e-5 * force.norm());
     };
     check_field();
     update_contact(world, hand_at(world, 0), {});

@@ -6,7 +6,7 @@
 #include "core/units.h"
 #include "simulation/client_pull.h"
 #include "simulation/edit.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/molecules.h"
 #include "simulation/step.h"

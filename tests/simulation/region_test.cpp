@@ -6,7 +6,7 @@
 #include "assembly/joints.h"
 #include "scene/read_scene.h"
 #include "simulation/edit.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/molecules.h"
@@ -184,8 +184,8 @@ void pull(World& world, const Vec3& by) {
     const Entity first = hand_at(world, 0);
     hand.molecule = grip_of(world, first).pose;
     hand.molecule->place_angstrom += by;
-    hand.start = contact_of(world, first).answer.model.start;
-    REQUIRE(step_world(world, hand, contact_of(world, first).answer.model).finite);
+    hand.grip_number = contact_of(world, first).sent.model.grip_number;
+    REQUIRE(step_world(world, hand, contact_of(world, first).sent.model).finite);
 }
 
 // Of cut bonds, by how much any has become longer or shorter, Å.

@@ -4,7 +4,7 @@
 
 #include "scene/read_scene.h"
 #include "simulation/edit.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
@@ -87,7 +87,7 @@ TEST_CASE("a scene of a remote engine needs no force field", "[simulation][engin
         (15.999 + 2 * 1.008);
     CHECK((held_place(world, hand) - middle).norm() < 1e-12);
     CHECK_FALSE(hold.is_live);
-    CHECK(contact_of(world, hand).answer.model.force_newton == Vec3::Zero());
+    CHECK(contact_of(world, hand).sent.model.force_newton == Vec3::Zero());
 }
 
 TEST_CASE("a remote engine's atoms are taken by springs, and nothing else is changed",

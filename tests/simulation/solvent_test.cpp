@@ -7,7 +7,7 @@
 #include "scene/read_scene.h"
 #include "simulation/components.h"
 #include "simulation/edit.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/resources.h"
 #include "simulation/systems/publish_contact.h"

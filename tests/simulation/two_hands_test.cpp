@@ -2,7 +2,7 @@
 #include "core/units.h"
 #include "scene/read_scene.h"
 #include "simulation/edit.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/molecules.h"
@@ -51,7 +51,7 @@ void step_to(World& world, const Poses& poses) {
     std::array<ContactModel, 2> felt;
     for (std::size_t i = 0; i < 2; ++i) {
         hands[i].molecule = poses[i];
-        felt[i] = contact_of(world, hands_of(world)[i]).answer.model;
+        felt[i] = contact_of(world, hands_of(world)[i]).sent.model;
     }
     REQUIRE(step_world(world, {hands, felt}).finite);
 }
@@ -95,7 +95,7 @@ TEST_CASE("two hands feel what one feels with the molecules where they have them
     for (std::size_t slot = 0; slot < 2; ++slot) {
         INFO("hand " << slot);
         World one = one_hand(two, scene, slot);
-        const ContactModel& felt = contact_of(two, hands_of(two)[slot]).answer.model;
+        const ContactModel& felt = contact_of(two, hands_of(two)[slot]).sent.model;
         const HandPose hand{.molecule =
                                 MoleculePose{poses[slot].place_angstrom,
                                              grip_of(one, hand_at(one, 0)).pose.orientation}};
@@ -127,7 +127,7 @@ TEST_CASE("between steps a hand feels the other's molecule where its servo has i
     poses[1].place_angstrom.x() -= 1.3;
     step_to(world, poses);
     std::array<LocalContactModel, 2> contacts;
-    for (std::size_t i = 0; i < 2; ++i) contacts[i] = contact_of(world, hands_of(world)[i]).answer;
+    for (std::size_t i = 0; i < 2; ++i) contacts[i] = contact_of(world, hands_of(world)[i]).sent;
 
     Poses later = poses;
     later[0].place_angstrom += Vec3(0.2, 0.1, 0);
@@ -146,13 +146,13 @@ TEST_CASE("between steps a hand feels the other's molecule where its servo has i
         CHECK(contact.field.held[0].frozen.environment.positions.size() == 3);
         const Vec3 foretold =
             evaluate_local(contact.model, contact.field, later[i], live).force_newton;
-        const Vec3 came = contact_of(world, hands_of(world)[i]).answer.model.force_newton;
+        const Vec3 came = contact_of(world, hands_of(world)[i]).sent.model.force_newton;
         REQUIRE(relative(contact.model.force_newton, came) > 0.05);
         CHECK(relative(foretold, came) < 1e-5);
         // Nothing gives way: all that was foretold came.
-        CHECK(contact_of(world, hands_of(world)[i]).answer.model.prediction_gain ==
+        CHECK(contact_of(world, hands_of(world)[i]).sent.model.prediction_gain ==
               Approx(1).margin(1e-4));
-        CHECK_FALSE(contact_of(world, hands_of(world)[i]).answer.model.is_compliant);
+        CHECK_FALSE(contact_of(world, hands_of(world)[i]).sent.model.is_compliant);
     }
 }
 
@@ -168,7 +168,7 @@ TEST_CASE("what both hands move together was foretold to feel the same", "[simul
     }
     // With a field that left the other where it was, it would be 1/2^5.
     for (const Entity hand : hands_of(world))
-        CHECK(contact_of(world, hand).answer.model.prediction_gain > 0.95);
+        CHECK(contact_of(world, hand).sent.model.prediction_gain > 0.95);
 }
 
 TEST_CASE("hands without a pose of their own stand still", "[simulation][second]") {
@@ -200,7 +200,7 @@ TEST_CASE("of two molecules in hand that turn by themselves each hand is pulled 
         const Vec3 expected = field_on_held(world, hand).force;
         REQUIRE(expected.norm() > 0.5);
         CHECK(relative(force, expected) < 1e-12);
-        CHECK(relative(contact_of(world, hand).answer.model.force_newton,
+        CHECK(relative(contact_of(world, hand).sent.model.force_newton,
                        units::newton_per_kcal_per_mol_angstrom * expected) < 1e-12);
     }
 }
@@ -311,7 +311,7 @@ TEST_CASE(
         hand.molecule = poses[0];
         REQUIRE(step_world(one, hand, contact_at(one, 0).model).finite);
 
-        const ContactModel& felt = contact_of(two, first).answer.model;
+        const ContactModel& felt = contact_of(two, first).sent.model;
         const ContactModel& expected = contact_at(one, 0).model;
         CHECK(relative(felt.force_newton, expected.force_newton) < 1e-8);
         CHECK(relative(felt.torque_newton_metre, expected.torque_newton_metre) < 1e-8);
@@ -320,9 +320,9 @@ TEST_CASE(
         // The other hand feels its spring, and as much as the restraint.
         const Vec3 stretch =
             one.resource<AtomTable>().positions[atom] - spring_of(two, second)->place;
-        CHECK(relative(contact_of(two, second).answer.model.force_newton,
+        CHECK(relative(contact_of(two, second).sent.model.force_newton,
                        k * units::newton_per_kcal_per_mol_angstrom * stretch) < 1e-8);
     }
-    CHECK(contact_of(two, second).answer.model.force_newton.norm() > 20e-12);
-    CHECK(contact_of(two, first).answer.model.force_newton.norm() > 20e-12);
+    CHECK(contact_of(two, second).sent.model.force_newton.norm() > 20e-12);
+    CHECK(contact_of(two, first).sent.model.force_newton.norm() > 20e-12);
 }

@@ -3,7 +3,7 @@
 #include "scene/read_scene.h"
 #include "session/undo_history.h"
 #include "simulation/edit.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/resources.h"
 #include "simulation/step.h"
@@ -82,7 +82,7 @@ private:
     void step(World& world) const {
         std::vector<ContactModel> felt;
         for (const Entity hand : find_hands(world))
-            felt.push_back(contact_of(world, hand).answer.model);
+            felt.push_back(contact_of(world, hand).sent.model);
         (void)step_world(world, {poses_, felt});
     }
 

@@ -4,7 +4,7 @@
 #include "core/text.h"
 #include "core/units.h"
 #include "field/pair_field.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "tests/support/paths.h"

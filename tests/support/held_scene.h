@@ -4,7 +4,7 @@
 #include "scene/description.h"
 #include "scene/read_scene.h"
 #include "simulation/components.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/molecules.h"
 #include "simulation/resources.h"

@@ -1,5 +1,5 @@
 #pragma once
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/step.h"
 #include "tests/support/step_once.h"
 

@@ -111,7 +111,7 @@ struct TwoHeld {
         for (const Vec3& arm : own.shape) field.radius = std::max(field.radius, arm.norm());
         const std::vector<Vec3> atoms = environment.at({});
         field.frozen = build_frozen_field(own.view(field.group), environment.view(atoms), rule);
-        field.there = evaluate_frozen_field(field.frozen, field.group);
+        field.at_step = evaluate_frozen_field(field.frozen, field.group);
         field.has_atoms = true;
         const std::vector<Vec3> others = bodies[other].at(poses[other]);
         HeldField& mutual_field = field.held.emplace_back();
@@ -120,9 +120,9 @@ struct TwoHeld {
         mutual_field.pivot = bodies[other].reference(poses[other]);
         mutual_field.frozen =
             build_frozen_field(own.view(field.group), bodies[other].view(others), rule);
-        mutual_field.there = evaluate_frozen_field(mutual_field.frozen, field.group);
+        mutual_field.at_step = evaluate_frozen_field(mutual_field.frozen, field.group);
         contact.model.clearance_angstrom =
-            std::max(0.0, std::min(field.there.clearance, mutual_field.there.clearance));
+            std::max(0.0, std::min(field.at_step.clearance, mutual_field.at_step.clearance));
         return contact;
     }
 };

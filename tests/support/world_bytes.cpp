@@ -1,7 +1,7 @@
 #include "tests/support/world_bytes.h"
 
 #include "haptics/gains.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
 
@@ -100,7 +100,7 @@ void add_hands(const World& world, Bytes& bytes) {
               << grip.before.motion << grip.before.shape << grip.projector << grip.is_new;
     });
     world.each<Contact>([&](Entity hand, const Contact& held) {
-        const ContactModel& contact = held.answer.model;
+        const ContactModel& contact = held.sent.model;
         bytes << hand << held.near.atoms << held.near.steps << held.near.place << held.near.most
               << contact.force_newton << contact.prediction_gain << contact.is_still
               << contact.potential_kcal_per_mol;

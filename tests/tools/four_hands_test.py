@@ -88,6 +88,11 @@ class FourHands(unittest.TestCase):
         self.assertAlmostEqual(vector(last, "molecule_angstrom", 2)[1], 9, delta=0.1)
         self.assertGreater(vector(last, "molecule_angstrom", 3)[1], -7.5)
 
+    def test_help_knows_the_keys_of_every_hand(self):
+        self.assertEqual(palpa("help", "hand[2].grab.atom").stdout, palpa("help", "grab.atom").stdout)
+        self.assertTrue(palpa("help", "hand[3].stroke").stdout.startswith("hand.stroke\n"))
+        self.assertTrue(palpa("help", "hand").stdout.startswith("hand[N].KEY\n"))
+
     def test_what_is_wrong_names_the_hand(self):
         for setting, message in [("hand[4].stroke=in", "'hand[4].stroke' is the text \"in\""),
                                  ("hand[3].grab.molecule=north", "'hand[3].grab.molecule' is \"north\", which is not a molecule"),

@@ -3,7 +3,7 @@
 #include "render/renderer.h"
 #include "scene/read_scene.h"
 #include "simulation/edit.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"

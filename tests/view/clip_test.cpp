@@ -2,7 +2,7 @@
 
 #include "render/renderer.h"
 #include "scene/read_scene.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "tests/support/gpu.h"
 #include "tests/support/held_scene.h"

@@ -1,6 +1,6 @@
 #include "view/contact_pairs.h"
 
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/resources.h"
 #include "tests/support/held_scene.h"

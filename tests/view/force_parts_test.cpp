@@ -1,7 +1,7 @@
 #include "view/force_parts.h"
 
 #include "core/units.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"

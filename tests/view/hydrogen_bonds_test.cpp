@@ -1,6 +1,6 @@
 #include "view/hydrogen_bonds.h"
 
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"

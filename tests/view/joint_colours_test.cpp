@@ -1,6 +1,6 @@
 // Colours of how joints answer.
 #include "scene/read_scene.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"

@@ -2,7 +2,7 @@
 
 #include "scene/read_scene.h"
 #include "simulation/edit.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"

@@ -134,7 +134,7 @@ DeviceCheck check_force(Device& device) {
     }
     return {"force", CheckOutcome::Failed, "the handle did not move",
             worst == SafetyStage::None ? "hold it loosely and try again; check its power supply"
-                                       : std::string(words(worst))};
+                                       : std::string(describe(worst))};
 }
 
 // What the servo's thread is granted; asked for on one that ends.

@@ -8,7 +8,7 @@
 #include "session/accuracy_report.h"
 #include "session/plan_hand.h"
 #include "session/run_headless.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/probe.h"
 #include "simulation/solver.h"
 

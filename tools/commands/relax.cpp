@@ -6,7 +6,7 @@
 #include "molecule/coincident_atoms.h"
 #include "scene/read_scene.h"
 #include "session/compare_poses.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "tools/commands/command.h"
 #include "tools/commands/progress.h"

@@ -10,7 +10,7 @@
 #include "render/picture.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/select_in_world.h"
 #include "tools/commands/choice.h"

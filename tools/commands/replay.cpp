@@ -10,7 +10,7 @@
 #include "session/recording.h"
 #include "session/replay.h"
 #include "session/run_headless.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "tools/commands/command.h"
 #include "tools/commands/kernels.h"

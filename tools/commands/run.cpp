@@ -12,7 +12,7 @@
 #include "session/run_headless.h"
 #include "session/statistics_file.h"
 #include "session/trajectory_recorder.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/remote_engine.h"
 #include "simulation/solver.h"

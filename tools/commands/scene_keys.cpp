@@ -5,6 +5,7 @@
 #include "scene/fields.h"
 
 #include <fmt/format.h>
+#include <cstddef>
 #include <string_view>
 
 namespace palpa {
@@ -14,12 +15,22 @@ namespace {
 bool is_asked_for(std::string_view key, std::string_view asked) {
     if (asked == "keys" || key == asked || key.ends_with("." + std::string(asked))) return true;
     if (asked.ends_with('.')) asked.remove_suffix(1);
-    return key.starts_with(std::string(asked) + ".");
+    return key.starts_with(std::string(asked) + ".") || key.starts_with(std::string(asked) + "[");
+}
+
+// The key under which one of several hands' is listed: "grab.atom" for "hand[2].grab.atom".
+std::string listed_key(const std::string& asked) {
+    const std::size_t end = asked.find("].");
+    if (!asked.starts_with("hand[") || end == asked.npos) return asked;
+    const std::string rest = asked.substr(end + 2);
+    const bool is_in_table = rest.find('.') != rest.npos;
+    return is_in_table ? rest : "hand." + rest;
 }
 
 std::vector<FieldNote> find_fields(const std::string& asked) {
     std::vector<FieldNote> found = list_fields();
-    std::erase_if(found, [&](const FieldNote& field) { return !is_asked_for(field.key, asked); });
+    const std::string key = listed_key(asked);
+    std::erase_if(found, [&](const FieldNote& field) { return !is_asked_for(field.key, key); });
     return found;
 }
 

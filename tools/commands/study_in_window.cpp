@@ -10,7 +10,7 @@
 #include "experiments/study_course.h"
 #include "experiments/study_scene.h"
 #include "haptics/hand.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "tools/commands/command.h"

@@ -1,7 +1,7 @@
 #include "charmm/force_field.h"
 #include "scene/edits.h"
 #include "simulation/edits/changes.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/mechanics.h"
 #include "simulation/molecules.h"
 #include "simulation/resources.h"

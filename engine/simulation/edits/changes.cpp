@@ -1,6 +1,6 @@
 #include "simulation/edits/changes.h"
 
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/mechanics.h"
 #include "simulation/resources.h"
 #include "simulation/systems/publish_contact.h"
@@ -16,15 +16,15 @@ namespace {
 
 void refresh_contact(World& world, Entity hand) {
     Contact& contact = *world.write<Contact>(hand);
-    const std::uint32_t start = contact.answer.model.start;
+    const std::uint32_t start = contact.sent.model.grip_number;
     contact.near = {};
     if (world.find<Grip>(hand)) {
         update_near(world, hand);
-        contact.answer = build_local_contact(world, hand, {});
+        contact.sent = build_local_contact(world, hand, {});
     } else {
-        contact.answer = build_still_contact(world);
+        contact.sent = build_still_contact(world);
     }
-    contact.answer.model.start = start;
+    contact.sent.model.grip_number = start;
 }
 
 bool can_move_by_itself(const Mobility& mobility) {
@@ -77,7 +77,9 @@ void release(World& world, Entity hand) {
     free_for_spring(mobility);
 }
 
-void take_hold_anew(World& world, Entity hand) { ++world.write<Contact>(hand)->answer.model.start; }
+void take_hold_anew(World& world, Entity hand) {
+    ++world.write<Contact>(hand)->sent.model.grip_number;
+}
 
 void check_room(const AtomTable& atoms, AtomRange added, const std::string& name,
                 const std::string& remedy) {

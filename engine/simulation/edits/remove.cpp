@@ -1,6 +1,6 @@
 #include "scene/edits.h"
 #include "simulation/edits/changes.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/molecules.h"
 #include "simulation/resources.h"
 

@@ -2,7 +2,7 @@
 
 #include "core/repeatable.h"
 #include "simulation/components.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
 #include "simulation/systems/gather_springs.h"
@@ -29,7 +29,7 @@ void hold_anew(World& world, Entity hand, EngineHold& hold) {
     grip.pose.place_angstrom = hold.middle - grip.anchor;
     world.write<Spring>(hand)->place = hold.middle;
     gather_springs(world, {});
-    ++world.write<Contact>(hand)->answer.model.start;
+    ++world.write<Contact>(hand)->sent.model.grip_number;
 }
 
 void follow_atoms(World& world, const RemoteEngine& engine, Entity hand, bool is_live) {

@@ -2,7 +2,7 @@
 
 #include "core/assertion.h"
 #include "core/units.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 
 #include <cstddef>
@@ -20,7 +20,7 @@ struct Move {
 Move find_move(const DisplacementLaw& law, const Grip& grip, const Hand& before,
                const HandPose& pose, const ContactModel& felt, std::uint32_t start) noexcept {
     // What the servo put elsewhere was held before.
-    if (pose.molecule) return {pose.start == start ? *pose.molecule : grip.pose};
+    if (pose.molecule) return {pose.grip_number == start ? *pose.molecule : grip.pose};
     const double gain = displacement_gain(law, felt.force_newton.norm());
     const Vec3 handle_m = grip.projector * (pose.travel_m - before.travel_m);
     Move move{{grip.pose.place_angstrom + handle_m / gain * units::angstrom_per_metre,
@@ -55,8 +55,9 @@ void follow_hands(World& world, const StepInput& input) {
         const HandPose& pose = input.hands[slot];
         const ContactModel& felt = input.felt[slot++];
         if (grip) {
-            const Move move = find_move(coupling_of(world, entity).laws.displacement, *grip, hand,
-                                        pose, felt, contact_of(world, entity).answer.model.start);
+            const Move move =
+                find_move(coupling_of(world, entity).laws.displacement, *grip, hand, pose, felt,
+                          contact_of(world, entity).sent.model.grip_number);
             report.finite = report.finite && is_within_reach(move.to);
             report.moves.back() = {(move.to.place_angstrom - grip->pose.place_angstrom).norm(),
                                    move.displacement_gain};

@@ -1,6 +1,6 @@
 #include "simulation/systems/gather_springs.h"
 
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/solver.h"
 
 #include <algorithm>

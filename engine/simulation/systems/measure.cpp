@@ -2,7 +2,7 @@
 
 #include "math/angles.h"
 #include "molecule/measure.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 
 #include <cstddef>
@@ -26,7 +26,7 @@ void measure(World& world, const StepInput& /*input*/) {
     ++world.write<Clock>().steps;
     StepReport& report = world.write<StepReport>();
     world.each<Contact>([&](Entity, const Contact& contact) {
-        report.finite = report.finite && contact.answer.model.force_newton.allFinite();
+        report.finite = report.finite && contact.sent.model.force_newton.allFinite();
     });
     world.write_each<Mark>([&](Entity, Mark& mark) { mark.value = find_value(world, mark); });
 }

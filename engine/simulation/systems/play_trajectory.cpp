@@ -3,7 +3,7 @@
 #include "core/load_error.h"
 #include "formats/trajectory.h"
 #include "simulation/components.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/molecules.h"
 #include "simulation/playback.h"
 #include "simulation/resources.h"
@@ -72,7 +72,7 @@ void hold_in_frame(World& world, Entity hand) {
                            : grip.pose.place_angstrom;
     Contact& contact = *world.write<Contact>(hand);
     contact.near = {};  // other atoms may be around it
-    ++contact.answer.model.start;
+    ++contact.sent.model.grip_number;
 }
 
 void show(World& world, Playback& playback, std::size_t frame) {

@@ -1,7 +1,7 @@
 #include "simulation/systems/publish_contact.h"
 
 #include "core/units.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
 
@@ -160,11 +160,12 @@ HeldField build_held_field(const World& world, Entity hand, const OtherHeld& oth
                            const FieldPoints& group) {
     HeldField held;
     held.hand = other.slot;
-    held.then = {grip_of(world, other.hand).pose, contact_of(world, other.hand).answer.model.start};
+    held.then = {grip_of(world, other.hand).pose,
+                 contact_of(world, other.hand).sent.model.grip_number};
     held.pivot = held_place(world, other.hand);
     held.frozen = build_frozen_field(group, points_of(world.resource<AtomTable>(), other.atoms),
                                      pair_rule(world));
-    held.there = evaluate_frozen_field(held.frozen, group.positions);
+    held.at_step = evaluate_frozen_field(held.frozen, group.positions);
     held.relaxed_N_per_m = find_relaxed_coupling(world, hand, other.hand);
     return held;
 }
@@ -175,7 +176,7 @@ LocalField build_local_field(const World& world, Entity hand) {
     const std::vector<OtherHeld> others = list_others(world, hand);
     field.frozen = freeze(world, hand, group, others);
     field.group.assign(group.positions.begin(), group.positions.end());
-    field.there = evaluate_frozen_field(field.frozen, field.group);
+    field.at_step = evaluate_frozen_field(field.frozen, field.group);
     for (const OtherHeld& other : others)
         field.held.push_back(build_held_field(world, hand, other, group));
     field.has_atoms =
@@ -224,7 +225,7 @@ Pull find_pull(const World& world, Entity hand, const LocalField& field) {
         const Vec6 wrench = find_pull_on_held(world, hand);
         pull.force = wrench.tail<3>();
         pull.torque = wrench.head<3>() - centre.cross(pull.force);
-        pull.stiffness = sum_there(field).stiffness;
+        pull.stiffness = sum_at_step(field).stiffness;
         pull.energy = find_energy(world);
         return pull;
     }
@@ -295,7 +296,7 @@ void update_confirmed(const LocalContactModel& last, LocalContactModel& contact)
     if (!last.field.has_atoms || !contact.field.has_atoms || contact.model.relaxed) return;
     const FrozenSum sum =
         evaluate_field(last.field, contact.field.group, {}, list_held(contact.field));
-    const FrozenSum before = sum_there(last.field);
+    const FrozenSum before = sum_at_step(last.field);
     const Mat3& free = contact.model.projector;
     const Vec3 force =
         units::newton_per_kcal_per_mol_angstrom * (free * (sum.force - before.force));
@@ -320,7 +321,7 @@ void publish_contact(World& world, const StepInput& input) {
         if (world.find<Grip>(hand)) {
             update_contact(world, hand, slot < input.hands.size() ? input.hands[slot] : HandPose{});
             const std::optional<double>& gain = report.moves[slot].displacement_gain;
-            if (gain) world.write<Contact>(hand)->answer.model.displacement_gain = *gain;
+            if (gain) world.write<Contact>(hand)->sent.model.displacement_gain = *gain;
         }
         ++slot;
     });
@@ -329,8 +330,8 @@ void publish_contact(World& world, const StepInput& input) {
 void update_contact(World& world, Entity hand, const HandPose& pose) {
     update_near(world, hand);
     LocalContactModel contact = build_local_contact(world, hand, pose);
-    LocalContactModel& last = world.write<Contact>(hand)->answer;
-    contact.model.start = last.model.start;
+    LocalContactModel& last = world.write<Contact>(hand)->sent;
+    contact.model.grip_number = last.model.grip_number;
     if (last.model.relaxed && contact.model.relaxed)
         limit_change(*last.model.relaxed, contact.model.period_s, *contact.model.relaxed);
     update_confirmed(last, contact);
@@ -364,7 +365,7 @@ LocalContactModel build_local_contact(const World& world, Entity hand, const Han
     for (const Vec3& place : contact.field.group)
         contact.field.radius = std::max(contact.field.radius, (place - contact.field.pivot).norm());
     contact.model = build_model(world, hand, pose, find_pull(world, hand, contact.field));
-    contact.model.clearance_angstrom = sum_there(contact.field).clearance;
+    contact.model.clearance_angstrom = sum_at_step(contact.field).clearance;
     return contact;
 }
 

@@ -1,7 +1,7 @@
 #include "simulation/systems/pull_by_clients.h"
 
 #include "simulation/client_pull.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
 #include "simulation/systems/gather_springs.h"

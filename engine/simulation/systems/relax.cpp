@@ -1,6 +1,6 @@
 #include "simulation/systems/relax.h"
 
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/solver.h"
 
 #include <cstdint>

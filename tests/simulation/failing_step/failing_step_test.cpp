@@ -1,7 +1,7 @@
 // A step that fails leaves the world as it was, whatever its systems wrote: this program has the
 // engine's own step.cpp with a system more that writes anything.
 #include "scene/read_scene.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/resources.h"
 #include "simulation/step.h"

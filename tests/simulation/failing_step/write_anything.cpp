@@ -1,7 +1,7 @@
 #include "tests/simulation/failing_step/write_anything.h"
 
 #include "simulation/components.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
 
@@ -58,7 +58,7 @@ constexpr Write writes[] = {
     [](World& world, std::mt19937&) {
         world.write<Grip>(hand_at(world, 0))->pose.place_angstrom += Vec3::Ones();
     },
-    [](World& world, std::mt19937&) { world.write<Contact>(hand_at(world, 0))->answer = {}; },
+    [](World& world, std::mt19937&) { world.write<Contact>(hand_at(world, 0))->sent = {}; },
     [](World& world, std::mt19937&) { world.set(world.create(), Spring{}); },
     [](World& world, std::mt19937& random) {
         world.set(world.create(), Tag{1, {double(random())}});

@@ -1,6 +1,6 @@
 #include "tests/simulation/wind/wind.h"
 
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 #include "simulation/systems/gather_springs.h"
 

@@ -9,7 +9,7 @@
 #include "scene/read_scene.h"
 #include "simulation/client_pull.h"
 #include "simulation/edit.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/molecules.h"
@@ -184,7 +184,7 @@ TEST_CASE("two winds, a client and two hands pull at once, each with its own for
     CHECK((moved - Vec3(wind, gust, client) / k).norm() < 0.03);
     // The hands hold theirs against the wind alone.
     for (std::size_t i = 0; i < 2; ++i) {
-        const Vec3 felt = contact_of(world, hands[i]).answer.model.force_newton;
+        const Vec3 felt = contact_of(world, hands[i]).sent.model.force_newton;
         CHECK(held_place(world, hands[i]) == ends[i]);
         CHECK(felt.norm() < 0.03 * wind * units::newton_per_kcal_per_mol_angstrom);
     }

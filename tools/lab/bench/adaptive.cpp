@@ -1,7 +1,7 @@
 #include "tools/lab/bench/adaptive.h"
 
 #include "core/units.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/solver.h"
 #include "tools/lab/bench/stroke.h"

@@ -1,7 +1,7 @@
 #include "tools/lab/bench/answer.h"
 
 #include "haptics/gains.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"

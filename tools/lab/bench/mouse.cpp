@@ -7,7 +7,7 @@
 #include "experiments/emulated_hand.h"
 #include "experiments/mouse_person.h"
 #include "session/statistics.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/resources.h"
 

@@ -1,6 +1,6 @@
 #include "tools/lab/bench/real_time_way.h"
 
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/solver.h"
 #include "simulation/step.h"
@@ -43,8 +43,8 @@ Played play(World& world) {
         due += period;
         HandPose pose;
         pose.molecule = {start.place_angstrom + Vec3(way, 0, 0), start.orientation};
-        pose.start = contact_of(world, hand).answer.model.start;
-        const ContactModel felt = contact_of(world, hand).answer.model;
+        pose.grip_number = contact_of(world, hand).sent.model.grip_number;
+        const ContactModel felt = contact_of(world, hand).sent.model;
         const StepReport& report =
             step_world(world, {{&pose, 1},
                                {&felt, 1},

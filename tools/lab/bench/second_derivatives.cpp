@@ -1,6 +1,6 @@
 #include "tools/lab/bench/second_derivatives.h"
 
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/mechanics.h"
 #include "simulation/solver.h"
 #include "statics/fast_second_derivatives.h"

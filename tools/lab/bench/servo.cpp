@@ -3,7 +3,7 @@
 #include "core/units.h"
 #include "haptics/servo.h"
 #include "session/run_headless.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 
 #include <fmt/format.h>
@@ -73,10 +73,10 @@ LocalContactModel make_up_touch(std::size_t group, std::size_t environment) {
     contact.field.frozen =
         build_frozen_field(own.view(), others.view(), {units::charmm_coulomb_constant});
     contact.field.group = own.positions;
-    contact.field.there = evaluate_frozen_field(contact.field.frozen, own.positions);
+    contact.field.at_step = evaluate_frozen_field(contact.field.frozen, own.positions);
     contact.field.has_atoms = true;
     contact.model.force_newton =
-        contact.field.there.force * units::newton_per_kcal_per_mol_angstrom;
+        contact.field.at_step.force * units::newton_per_kcal_per_mol_angstrom;
     contact.model.period_s = 1e-3 * ticks_per_model;
     return contact;
 }

@@ -1,6 +1,6 @@
 #include "core/load_error.h"
 #include "core/text.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/solver.h"
 #include "tools/lab/bench/adaptive.h"

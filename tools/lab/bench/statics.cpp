@@ -1,7 +1,7 @@
 #include "tools/lab/bench/statics.h"
 
 #include "core/load_error.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/probe.h"

@@ -1,6 +1,6 @@
 #include "tools/lab/bench/steppers.h"
 
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/mechanics.h"
 #include "simulation/solver.h"
 #include "tools/lab/bench/stroke.h"

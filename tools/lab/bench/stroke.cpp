@@ -3,7 +3,7 @@
 #include "assembly/joints.h"
 #include "core/load_error.h"
 #include "core/units.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/solver.h"
 

@@ -1,7 +1,7 @@
 #include "tools/lab/bench/truth.h"
 
 #include "core/load_error.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/mechanics.h"
 #include "simulation/solver.h"
 

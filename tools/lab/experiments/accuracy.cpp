@@ -9,7 +9,7 @@
 #include "scene/read_scene.h"
 #include "session/accuracy_report.h"
 #include "session/run_headless.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/probe.h"

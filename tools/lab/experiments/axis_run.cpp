@@ -8,7 +8,7 @@
 #include "session/lockstep.h"
 #include "session/ripple.h"
 #include "session/run_headless.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"

@@ -7,7 +7,7 @@
 #include "experiments/emulated_hand.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "tools/lab/experiments/continuous_law.h"

@@ -2,7 +2,7 @@
 
 #include "core/units.h"
 #include "simulation/components.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/probe.h"
 
 #include <algorithm>

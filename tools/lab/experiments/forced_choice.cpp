@@ -6,7 +6,7 @@
 #include "session/lockstep.h"
 #include "session/run_headless.h"
 #include "simulation/coupling.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/step.h"

@@ -6,7 +6,7 @@
 #include "core/version.h"
 #include "scene/find_scene.h"
 #include "scene/read_scene.h"
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 #include "simulation/load.h"
 #include "simulation/probe.h"
 #include "tools/lab/bench/bench.h"

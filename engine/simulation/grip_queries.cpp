@@ -1,4 +1,4 @@
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 
 #include "core/assertion.h"
 #include "core/text.h"
@@ -61,7 +61,7 @@ const Contact& contact_of(const World& world, Entity hand) noexcept {
 }
 
 const LocalContactModel& contact_at(const World& world, std::size_t number) {
-    return contact_of(world, hand_at(world, number)).answer;
+    return contact_of(world, hand_at(world, number)).sent;
 }
 
 const Coupling& coupling_of(const World& world, Entity hand) noexcept {

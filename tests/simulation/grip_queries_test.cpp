@@ -1,4 +1,4 @@
-#include "simulation/held.h"
+#include "simulation/grip_queries.h"
 
 #include "simulation/probe.h"
 #include "simulation/solver.h"
