@@ -113,11 +113,12 @@ void check_motions(const SceneDescription& scene,
         const std::string key = "molecules." + molecule.name + ".motion";
         const bool by_itself = molecule.motion == Motion::Fixed || molecule.motion == Motion::Free;
         if (!by_itself && std::ranges::find(grabbed, &molecule) == grabbed.end()) {
-            problems.add(problems.place_of(key),
-                         fmt::format("'{}' is \"{}\", but {}; expected fixed or free", key,
-                                     name_of(molecule.motion),
-                                     grabbed.size() > 1 ? "no hand holds it (hand[N].grab.molecule)"
-                                                        : "the hand moves only grab.molecule"));
+            problems.add(
+                problems.place_of(key),
+                fmt::format("'{}' is \"{}\", but {}; expected fixed or free", key,
+                            name_of(molecule.motion),
+                            scene.hands.size() > 1 ? "no hand holds it (hand[N].grab.molecule)"
+                                                   : "the hand moves only grab.molecule"));
         }
         if (molecule.motion == Motion::AlongX && scene.has_statics()) {
             problems.add(problems.place_of(key),

@@ -329,12 +329,13 @@ void visit_coupling(FieldVisitor& v, CouplingDescription& c) {
     v.leave_table();
 }
 
-// A device or a coupling that a hand may have for itself, which begins as the scene's.
+// Visits a device or a coupling that a hand may have for itself; keys that the table does not have
+// are as in `from`.
 template <class Part, class Visit>
-void visit_own(FieldVisitor& v, const Field& table, const Part& of_scene, std::optional<Part>& own,
+void visit_own(FieldVisitor& v, const Field& table, const Part& from, std::optional<Part>& own,
                const Visit& visit) {
     if (!v.is_there(table, own.has_value())) return;
-    if (!own) own = of_scene;
+    if (!own) own = from;
     visit(v, *own);
 }
 
@@ -351,18 +352,22 @@ void visit_hands(FieldVisitor& v, SceneDescription& scene, bool is_remote) {
         visit_hand_keys(v, scene.hands.front());
         return v.leave_table();
     }
+    // What must be felt is not inherited, since no key could take it back.
+    CouplingDescription coupling = scene.coupling;
+    coupling.feel_pN.reset();
+    coupling.feel_within_pN.reset();
     std::size_t count = scene.hands.size();
     v.list_entries(list, count);
     scene.hands.resize(std::max<std::size_t>(count, 1));
     for (std::size_t i = 0; i < count; ++i) {
         HandDescription& hand = scene.hands[i];
-        TextPlace place = scene.place_of("hand");
+        TextPlace place = scene.place_of(fmt::format("hand[{}]", i + 1));
         v.enter_entry(list, i, place);
         visit_hand_keys(v, hand);
         visit_grab(v, hand.grab, is_remote);
         visit_own(v, {.key = "device", .meaning = "its device"}, scene.device, hand.device,
                   visit_device);
-        visit_own(v, {.key = "coupling", .meaning = "its coupling"}, scene.coupling, hand.coupling,
+        visit_own(v, {.key = "coupling", .meaning = "its coupling"}, coupling, hand.coupling,
                   visit_coupling);
         v.leave_table();
     }

@@ -4,6 +4,7 @@
 #include "core/text.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -52,6 +53,7 @@ toml::table take_second(toml::table& root) {
 void flatten(toml::table& root) {
     toml::array* const list = root["hand"].as_array();
     if (!list || list->size() != 1 || !list->front().is_table()) return;
+    if (list->front().as_table()->contains("grab") && root.contains("grab")) return;
     toml::table hand = std::move(*list->front().as_table());
     for (const std::string_view part : {"grab", "device", "coupling"})
         if (std::optional<toml::table> own = take_table(part, hand)) {
@@ -122,10 +124,8 @@ std::pair<toml::table*, std::string> find_table_of(const std::string& key, const
     const auto most = static_cast<std::int64_t>(most_hands);
     if (*number == count + 1 && *number <= most) list->push_back(toml::table());
     if (*number < 1 || *number > static_cast<std::int64_t>(list->size())) {
-        throw LoadError(
-            place, fmt::format("'{}' is none of the scene's {}; expected hand[1] to "
-                               "hand[{}]",
-                               word, count == 1 ? "hand" : "hands", std::min(count + 1, most)));
+        throw LoadError(place, fmt::format("the scene has no {}; expected hand[1] to hand[{}]",
+                                           word, std::min(count + 1, most)));
     }
     toml::table* const hand = list->get(static_cast<std::size_t>(*number - 1))->as_table();
     if (!hand) return {&root, key};

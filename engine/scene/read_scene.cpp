@@ -231,6 +231,7 @@ public:
         const std::string key = fmt::format("{}[{}]", full_key(field.key), index + 1);
         const toml::node& node = *levels_.back().table->get(field.key)->as_array()->get(index);
         place = place_of(node.source());
+        if (place.file.empty()) place = levels_.back().place;  // a table that no text has
         problems_.set_place(key, place);
         const toml::table* const table = node.as_table();
         if (!table) problem(node, fmt::format("'{}' is {}; expected a table", key, kind_of(node)));

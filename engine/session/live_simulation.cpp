@@ -45,7 +45,10 @@ SceneDescription as_live(SceneDescription scene) {
     constexpr double share = 0.8;
     scene.statics.renews_beside = true;
     const bool is_second_order = method_of(scene.statics) == RelaxMethod::SecondOrder;
-    if (scene.coupling.feel_within_pN && !scene.statics.budget_us && !is_second_order)
+    bool is_asked = false;
+    for (std::size_t hand = 0; hand < scene.hands.size(); ++hand)
+        is_asked = is_asked || coupling_of(scene, hand).feel_within_pN;
+    if (is_asked && !scene.statics.budget_us && !is_second_order)
         scene.statics.budget_us = share * 1e3 * scene.period_ms;
     return scene;
 }

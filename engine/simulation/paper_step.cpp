@@ -306,6 +306,32 @@ void before_step(World& world, PaperStep& paper, const StepInput& input) {
     }
 }
 
+namespace {
+
+// An error that is not a number is the largest.
+std::optional<double> find_larger(const std::optional<double>& a, const std::optional<double>& b) {
+    if (!a || (b && std::isnan(*b))) return b;
+    if (!b || std::isnan(*a)) return a;
+    return std::max(*a, *b);
+}
+
+// The largest error of a hand that has a tolerance, as a multiple of the smallest tolerance, which
+// the controller has.
+double find_error_for(const World& world, const AccuracyController& accuracy,
+                      const ErrorEstimate& estimate) {
+    std::optional<double> largest = 0;
+    std::size_t slot = 0;
+    for (const Entity hand : find_hands(world)) {
+        const std::optional<double>& error_pN = estimate.last_pN[slot++];
+        const auto within_pN = coupling_of(world, hand).description.feel_within_pN;
+        if (error_pN && within_pN)
+            largest = find_larger(largest, *error_pN * (accuracy.tolerance() / *within_pN));
+    }
+    return *largest;
+}
+
+}  // namespace
+
 void after_step(World& world, PaperStep& paper) {
     std::optional<RelaxStepReport>& report = world.write<StepReport>().relaxed;
     if (!paper.estimate || !report || !report->is_finite) return;
@@ -317,15 +343,18 @@ void after_step(World& world, PaperStep& paper) {
     if (accuracy ? !accuracy->is_due() : estimate.steps % every != 0) return;
     find_error(world, paper);
     report->is_estimating = true;
-    report->estimated_error_pN = *std::ranges::max_element(estimate.last_pN);
+    for (const std::optional<double>& error_pN : estimate.last_pN)
+        report->estimated_error_pN = find_larger(report->estimated_error_pN, error_pN);
     if (accuracy && report->estimated_error_pN)
-        accuracy->add_estimate(*report->estimated_error_pN, estimate.felt_pN, estimate.evaluations);
+        accuracy->add_estimate(find_error_for(world, *accuracy, estimate), estimate.felt_pN,
+                               estimate.evaluations);
 }
 
 void find_error(World& world, PaperStep& paper) {
     if (!paper.estimate) return;
     ErrorEstimate& estimate = *paper.estimate;
     estimate.last_pN.fill({});
+    estimate.felt_pN.fill(Vec3::Zero());
     const std::vector<Entity> hands = find_hands(world);
     const auto feels = [&](Entity hand) {
         return world.find<Grip>(hand) && is_mobile(world, hand);

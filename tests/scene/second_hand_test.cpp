@@ -309,6 +309,17 @@ grab = { molecule = "", measured_from = "fixed" }
     CHECK(one.place_of("hand.grip").line == 13);
 }
 
+TEST_CASE("what must be felt is no hand's own unless its table has it", "[scene][second]") {
+    const SceneDescription scene =
+        read_two("[coupling]\nmode = \"guarded\"\nfeel_pN = [20, 1000]\nfeel_within_pN = 50\n",
+                 {"hand[2].coupling.mode=3"});
+
+    CHECK(coupling_of(scene, 0).feel_within_pN == 50);
+    CHECK_FALSE(coupling_of(scene, 1).feel_within_pN);
+    CHECK_FALSE(coupling_of(scene, 1).feel_pN);
+    CHECK(parse_scene(write_two(scene), two_hands_file).hands == scene.hands);
+}
+
 TEST_CASE("settings without a number are those of the first hand", "[scene][second][settings]") {
     const std::vector<std::string> settings{
         "hand.grip=firm", "grab.spring_kcal_per_mol_angstrom2=7", "hand[2].peak_nN=5",
@@ -333,10 +344,10 @@ TEST_CASE("settings without a number are those of the first hand", "[scene][seco
     const auto error_of = [](const std::string& setting) {
         return test::load_error_of([&] { (void)read_two("", {setting}); });
     };
-    CHECK_THAT(error_of("hand[4].grip=firm"),
-               Contains("--set hand[4].grip=firm: 'hand[4]' is none of the scene's hands; expected "
-                        "hand[1] to hand[3]"));
-    CHECK_THAT(error_of("hand[0].grip=firm"), Contains("'hand[0]' is none of the scene's hands"));
+    CHECK_THAT(
+        error_of("hand[4].grip=firm"),
+        Contains("--set hand[4].grip=firm: the scene has no hand[4]; expected hand[1] to hand[3]"));
+    CHECK_THAT(error_of("hand[0].grip=firm"), Contains("the scene has no hand[0]"));
     CHECK_THAT(error_of("hand[3].grip=firm"), Contains("the table [hand[3].grab] is missing"));
     CHECK_THAT(error_of("hand[2].coupling.F_h2_N=0.5"),
                Contains("'hand[2].coupling.F_h2_N' is 0.5 N; expected more than F_h1_N"));
@@ -350,6 +361,9 @@ TEST_CASE("lists of hands that cannot be are refused", "[scene][second][errors]"
                Contains("'hand' has 5 entries; expected 1 to 4 tables [[hand]]"));
     CHECK_THAT(two_hands_error("hand = []\n" + before),
                Contains("'hand' has 0 entries; expected 1 to 4"));
+    CHECK_THAT(two_hands_error(before +
+                               "[grab]\nmolecule = \"moved\"\nmeasured_from = \"fixed\"\n" + hand),
+               Contains("unknown key 'grab'"));
     CHECK_THAT(two_hands_error("hand = 3\n" + two_hands),
                Contains("'hand' is 3; expected a table, [hand]"));
     CHECK_THAT(two_hands_error("hand = [3, 4]\n" + before),

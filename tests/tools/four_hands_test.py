@@ -88,6 +88,16 @@ class FourHands(unittest.TestCase):
         self.assertAlmostEqual(vector(last, "molecule_angstrom", 2)[1], 9, delta=0.1)
         self.assertGreater(vector(last, "molecule_angstrom", 3)[1], -7.5)
 
+    def test_two_hands_never_hold_a_molecule_as_a_whole(self):
+        # A third that holds an atom of it does not hide the second.
+        commands = 'take = "west:1 OH2", hand = "third"\ntake = "west", hand = "first"\nread\n'
+        result = subprocess.run([PROGRAM, "run", str(SCENE), "--headless", "--commands"], input=commands,
+                                capture_output=True, text=True)
+        self.assertGreaterEqual(result.returncode, 0, result.stderr)
+        answers = [json.loads(line) for line in result.stdout.splitlines()]
+        self.assertEqual([answer["ok"] for answer in answers][:3], [True, False, True])
+        self.assertIn("another hand holds 'west' as a whole", answers[1]["error"])
+
     def test_help_knows_the_keys_of_every_hand(self):
         self.assertEqual(palpa("help", "hand[2].grab.atom").stdout, palpa("help", "grab.atom").stdout)
         self.assertTrue(palpa("help", "hand[3].stroke").stdout.startswith("hand.stroke\n"))
@@ -96,7 +106,7 @@ class FourHands(unittest.TestCase):
     def test_what_is_wrong_names_the_hand(self):
         for setting, message in [("hand[4].stroke=in", "'hand[4].stroke' is the text \"in\""),
                                  ("hand[3].grab.molecule=north", "'hand[3].grab.molecule' is \"north\", which is not a molecule"),
-                                 ("hand[5].grip=firm", "'hand[5]' is none of the scene's hands; expected hand[1] to hand[4]")]:
+                                 ("hand[5].grip=firm", "the scene has no hand[5]; expected hand[1] to hand[4]")]:
             result = palpa("run", SCENE, "--headless", "--set", setting)
             self.assertEqual(result.returncode, 2, setting)
             self.assertIn(message, result.stderr)

@@ -284,7 +284,6 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
     fmt::print("  net work    {:+.4f} J on the hand\n", s.net_work_J);
     for (std::size_t i = 0; i < s.other_hands.size(); ++i) {
         const Summary& other = s.other_hands[i];
-        print_travel(fmt::format("travel of {}", i + 2), other.travel);
         fmt::print("  hand {}      at most {:.3f} N, net work {:+.4f} J", i + 2,
                    other.largest_felt_N, other.net_work_J);
         if (scene.engine) {
@@ -292,6 +291,7 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
         } else {
             fmt::print("; {:.3f} Å at the end\n", other.last_angstrom);
         }
+        print_travel(fmt::format("travel of {}", i + 2), other.travel);
     }
     // A spring to an engine's atoms is measured from no other molecule.
     if (!scene.engine) {

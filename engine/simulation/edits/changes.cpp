@@ -49,7 +49,8 @@ Entity find_hand(const World& world, std::size_t hand) {
 Entity other_holder(const World& world, Entity hand, Entity molecule) {
     Entity other;
     world.each<Grip>([&](Entity holder, const Grip& grip) {
-        if (holder != hand && grip.molecule == molecule) other = holder;
+        if (holder == hand || grip.molecule != molecule) return;
+        if (other == Entity{} || holds_whole(world, holder)) other = holder;
     });
     return other;
 }

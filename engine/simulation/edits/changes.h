@@ -25,7 +25,7 @@ void edit_whole(World& world, const Change& change) {
 // The hand of this number, from 0. Refuses one that the world does not have.
 Entity find_hand(const World& world, std::size_t hand);
 
-// Another hand that holds the molecule; none without one.
+// Another hand that holds the molecule, the one that holds it as a whole first; none without one.
 Entity other_holder(const World& world, Entity hand, Entity molecule);
 
 // Makes a molecule mobile that a spring is to move.

@@ -17,7 +17,7 @@ void PutBackEdit::apply(World& world, std::size_t slot) const {
             refuse("the hand holds nothing that could go back; expected one that holds some");
         const Molecule& molecule = *changed.find<Molecule>(grip->molecule);
         if (other_holder(changed, hand, grip->molecule) != Entity{}) {
-            refuse(fmt::format("the other hand holds '{}' too; expected it to let go first",
+            refuse(fmt::format("another hand holds '{}' too; expected it to release it first",
                                molecule.name));
         }
         AtomTable& atoms = changed.write<AtomTable>();

@@ -70,7 +70,7 @@ void TakeEdit::apply(World& world, std::size_t slot) const {
         const Entity other = other_holder(changed, hand, part.molecule);
         if (is_whole && other != Entity{} && holds_whole(changed, other)) {
             refuse(
-                fmt::format("the other hand holds '{}' as a whole; expected a residue or an "
+                fmt::format("another hand holds '{}' as a whole; expected a residue or an "
                             "atom of it, as \"{}:25 CA\"",
                             what, what));
         }
