@@ -18,7 +18,7 @@ struct PathPoint;
 
 inline constexpr double farthest_angstrom = 1e4;  // of a place from the origin
 
-// What a text must name (scene/edits.h).
+// The form of a text that names a part of the scene (scene/edits.h).
 enum class TextForm { Any, Molecule, MoleculeOrPart, ResidueOrAtom, Atom };
 
 struct Field {

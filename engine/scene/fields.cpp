@@ -352,7 +352,7 @@ void visit_hands(FieldVisitor& v, SceneDescription& scene, bool is_remote) {
         visit_hand_keys(v, scene.hands.front());
         return v.leave_table();
     }
-    // What must be felt is not inherited, since no key could take it back.
+    // A hand does not inherit feel_pN and feel_within_pN, since no key could unset them.
     CouplingDescription coupling = scene.coupling;
     coupling.feel_pN.reset();
     coupling.feel_within_pN.reset();

@@ -45,8 +45,8 @@ UnmetRequirements find_unmet(const AccuracyReport& report);
 // Gathers it tick by tick and step by step, in as much memory however long the run is.
 class AccuracyLog {
 public:
-    // Of one hand, by its number from 0. Where its coupling requires no range and no error limit
-    // there is no report.
+    // Creates the log of one hand, by its number from 0. There is no report if its coupling
+    // requires neither a range nor an error limit.
     AccuracyLog(const SceneDescription& scene, std::size_t hand, const ServoSettings& servo);
 
     void add(const ServoTick& tick) noexcept;

@@ -105,9 +105,9 @@ void renew_contacts(World& world) {
         if (!world.find<Grip>(hand)) continue;  // it feels nothing in any mode
         update_near(world, hand);
         LocalContactModel& contact = world.write<Contact>(hand)->sent;
-        const std::uint32_t start = contact.model.grip_number;
+        const std::uint32_t grip_number = contact.model.grip_number;
         contact = build_local_contact(world, hand, {});
-        contact.model.grip_number = start;
+        contact.model.grip_number = grip_number;
     }
 }
 

@@ -18,7 +18,8 @@ CouplingLaws build_coupling_laws(const CouplingDescription& coupling);
 // False if no such laws exist: eq. 2 cannot be calibrated to every combination of numbers.
 bool can_build_laws(const CouplingDescription& coupling);
 
-// The component of a hand with this coupling; `is_own`: which no other hand shares.
+// The component of a hand with this coupling; `is_own`: the scene gives this hand a coupling of its
+// own.
 Coupling build_coupling(const CouplingDescription& coupling, bool is_own);
 
 // Gives each hand the coupling that the scene has for it, and renews all contact models.

@@ -154,7 +154,7 @@ void print_rest(const World& world, double rest) {
 
 namespace {
 
-// What hands hold, where there are several.
+// Prints what each hand holds if there are several.
 void print_hands(const SceneDescription& scene) {
     if (scene.hands.size() < 2) return;
     std::vector<std::string> held;

@@ -22,7 +22,7 @@ struct AddEdit {
     std::string residue, copy_of;  // exactly one of residue, copy_of, structure
     std::string name;
     std::array<double, 3> at_angstrom{};
-    // As in [molecules.NAME]; without segment: the only one of the file.
+    // The keys of [molecules.NAME]; without segment: the only one of the file.
     std::filesystem::path structure{}, topology{};
     std::string segment{};
 

@@ -1,4 +1,4 @@
-// What the program needs to know of an edit beside its fields.
+// The traits of a kind of edit, beside its fields.
 #pragma once
 #include <string_view>
 
@@ -6,7 +6,6 @@ namespace palpa {
 
 struct EditKind {
     std::string_view key;         // in a scene file
-    bool by_hand = false;         // one of the hands makes it
     bool with_engine = false;     // also where a remote engine places the atoms
     bool is_quick = false;        // takes no time in a world of any size
     bool sets_coupling = false;   // changes the coupling

@@ -12,8 +12,7 @@ class World;
 
 // The hand releases what it holds.
 struct LetGoEdit {
-    static constexpr EditKind kind{
-        .key = "let_go", .by_hand = true, .with_engine = true, .is_of_molecules = false};
+    static constexpr EditKind kind{.key = "let_go", .with_engine = true, .is_of_molecules = false};
 
     void visit(FieldVisitor& v) { v.mark({.key = kind.key, .meaning = "the hand lets go"}); }
     std::string undo_name() const { return translated("letting go"); }

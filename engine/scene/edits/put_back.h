@@ -14,7 +14,7 @@ class World;
 // added, in the shape it had then; the hand keeps hold of it. Refused where something else is there
 // now, and where another hand holds it too.
 struct PutBackEdit {
-    static constexpr EditKind kind{.key = "put_back", .by_hand = true, .is_of_molecules = false};
+    static constexpr EditKind kind{.key = "put_back", .is_of_molecules = false};
 
     void visit(FieldVisitor& v) {
         v.mark(

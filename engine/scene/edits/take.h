@@ -14,8 +14,7 @@ class World;
 // releases what it held. A molecule held as a whole follows the hand; at a spring it moves by
 // itself, even if it is otherwise fixed. On release it gets back its former mobility.
 struct TakeEdit {
-    static constexpr EditKind kind{
-        .key = "take", .by_hand = true, .with_engine = true, .is_of_molecules = false};
+    static constexpr EditKind kind{.key = "take", .with_engine = true, .is_of_molecules = false};
 
     std::string what;
 

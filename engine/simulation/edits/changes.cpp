@@ -16,7 +16,7 @@ namespace {
 
 void refresh_contact(World& world, Entity hand) {
     Contact& contact = *world.write<Contact>(hand);
-    const std::uint32_t start = contact.sent.model.grip_number;
+    const std::uint32_t grip_number = contact.sent.model.grip_number;
     contact.near = {};
     if (world.find<Grip>(hand)) {
         update_near(world, hand);
@@ -24,7 +24,7 @@ void refresh_contact(World& world, Entity hand) {
     } else {
         contact.sent = build_still_contact(world);
     }
-    contact.sent.model.grip_number = start;
+    contact.sent.model.grip_number = grip_number;
 }
 
 bool can_move_by_itself(const Mobility& mobility) {
@@ -39,11 +39,12 @@ void settle_edit(World& world) {
 }
 
 Entity find_hand(const World& world, std::size_t hand) {
-    const std::vector<Entity> hands = find_hands(world);
-    if (hand >= hands.size())
+    const Entity found = hand_at(world, hand);
+    if (found == Entity{})
         refuse(fmt::format("there is no {} hand; the scene has {}",
-                           hand < most_hands ? edit_hand_names[hand] : "such", hands.size()));
-    return hands[hand];
+                           hand < most_hands ? edit_hand_names[hand] : "such",
+                           find_hands(world).size()));
+    return found;
 }
 
 Entity other_holder(const World& world, Entity hand, Entity molecule) {

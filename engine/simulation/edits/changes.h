@@ -1,4 +1,4 @@
-// What several edits do to a world.
+// Changes of a world that several edits make.
 #pragma once
 #include "ecs/world.h"
 #include "simulation/components.h"
@@ -34,7 +34,7 @@ void free_for_spring(Mobility& mobility);
 // The hand releases what it holds, which gets back its mobility.
 void release(World& world, Entity hand);
 
-// Gives the contact model another start: the servo puts the molecule where the model says.
+// Increments the grip number, so that the servo resets its pose from the model.
 void take_hold_anew(World& world, Entity hand);
 
 // Refuses a place where other molecules are: nothing that is not bonded comes as near, and from
