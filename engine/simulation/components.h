@@ -28,16 +28,12 @@ struct Molecule {
         0;  // index into the table; its position is the molecule's position
 };
 
-// Position and orientation. Written by what moves the molecule: a hand or relaxation.
-struct Pose {
-    Vec3 place = Vec3::Zero();            // Å, position of the reference atom
-    Quat orientation = Quat::Identity();  // rotation about that atom since loading
-};
-
-// For a rigid molecule outside of the mechanics: its atoms relative to the reference atom (Å), as
-// loaded.
+// For a rigid molecule outside of the mechanics that hands move: its atoms relative to the
+// reference atom (Å), as loaded, and its rotation about that atom since then, while no hand holds
+// it.
 struct RigidShape {
     std::vector<Vec3> atoms;
+    Quat orientation = Quat::Identity();
 };
 
 // Its atoms' places (Å) when the scene began, or when it was added.

@@ -136,6 +136,18 @@ std::vector<std::uint32_t> atoms_called(const World& world, Entity molecule,
     return found;
 }
 
+Quat orientation_of(const World& world, Entity molecule) {
+    const TorsionModel& model = model_of(world);
+    const auto atom =
+        model_atoms_of(world).in_model(world.find<Molecule>(molecule)->reference_atom);
+    if (atom && *atom < model.reference.size()) {
+        const std::uint32_t body = model.tree.bodies.body_of[*atom];
+        return world.resource<TorsionState>().turns[model.tree.molecule_of[body]];
+    }
+    const RigidShape* const shape = world.find<RigidShape>(molecule);
+    return shape ? shape->orientation : Quat::Identity();
+}
+
 Vec3 held_place(const World& world, Entity hand) noexcept {
     const Grip& grip = grip_of(world, hand);
     if (const ModelSpring* const spring = spring_of(world, hand)) return spring->place;
@@ -158,7 +170,6 @@ void place_held(World& world, Entity hand, const MoleculePose& pose) noexcept {
         copy_positions(world);
         return;
     }
-    *world.write<Pose>(grip.molecule) = {reference, pose.orientation};
     const RigidShape& shape = *world.find<RigidShape>(grip.molecule);
     const std::uint32_t first = world.find<Molecule>(grip.molecule)->atoms.first;
     std::vector<Vec3>& positions = world.write<AtomTable>().positions;

@@ -58,6 +58,9 @@ Vec3 middle_of(const World& world, const AtomsOf& atoms);
 // "25" ("27A" with its insertion code), or its 17th atom, "#17". Empty if there is none.
 std::vector<std::uint32_t> atoms_called(const World& world, Entity molecule, std::string_view name);
 
+// Rotation of a molecule that no hand holds, since it was loaded or the mechanics were built.
+Quat orientation_of(const World& world, Entity molecule);
+
 // Position of the held molecule's reference atom, or of the hand's end of the spring (Å, world
 // frame). The hand must hold something.
 Vec3 held_place(const World& world, Entity hand) noexcept;

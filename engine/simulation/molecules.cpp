@@ -59,11 +59,9 @@ Entity molecule_called(const World& world, std::string_view name) noexcept {
 }
 
 Entity create_molecule(World& world, Molecule molecule, Mobility mobility, Source source) {
-    const Vec3 place = world.resource<AtomTable>().positions[molecule.reference_atom];
     const Entity entity = world.create();
     world.set(entity, std::move(molecule));
     world.set(entity, mobility);
-    world.set(entity, Pose{place, Quat::Identity()});
     world.set(entity, std::move(source));
     world.set_resource(AtomEdition{std::make_shared<int>()});
     return entity;
@@ -93,13 +91,12 @@ void set_interactions(World& world) {
     set_solvation(world);
 }
 
-void set_shape(World& world, Entity entity) {
+void set_shape(World& world, Entity entity, const Quat& orientation) {
     const Molecule& molecule = *world.find<Molecule>(entity);
     const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
-    const Pose& pose = *world.find<Pose>(entity);
-    const Mat3 back = pose.orientation.toRotationMatrix().transpose();
-    const bool is_turned = pose.orientation.coeffs() != Quat::Identity().coeffs();
-    RigidShape shape;
+    RigidShape shape{{}, orientation};
+    const Mat3 back = orientation.toRotationMatrix().transpose();
+    const bool is_turned = orientation.coeffs() != Quat::Identity().coeffs();
     for (std::uint32_t i = 0; i < molecule.atoms.count; ++i) {
         const Vec3 arm = positions[molecule.atoms.first + i] - positions[molecule.reference_atom];
         shape.atoms.push_back(is_turned ? Vec3(back * arm) : arm);

@@ -22,8 +22,8 @@ AtomRange add_segment_atoms(const ForceField& force_field, const Source& source,
 // LoadError as set_solvation (simulation/solvent.h) does.
 void set_interactions(World& world);
 
-// Makes a molecule rigid from its present position on.
-void set_shape(World& world, Entity molecule);
+// Makes a molecule rigid from its present position on, in which it is turned by so much.
+void set_shape(World& world, Entity molecule, const Quat& orientation = Quat::Identity());
 
 // It starts where its atoms are now (StartPlaces).
 void set_start_places(World& world, Entity molecule);

@@ -706,6 +706,38 @@ TEST_CASE(
     CHECK(is_turned());
 }
 
+TEST_CASE("a rigid molecule keeps its orientation from one grip to the next",
+          "[simulation][edit]") {
+    World world = load_world(read_scene(test::in_project("scenes/water/space.toml")));
+    const Entity hand = hand_at(world, 0);
+    const std::string name = world.find<Molecule>(grip_of(world, hand).molecule)->name;
+    REQUIRE(grip_of(world, hand).freedom == 6);
+    HandPose pose;
+    pose.molecule = grip_of(world, hand).pose;
+    pose.molecule->orientation = Quat(Eigen::AngleAxisd(0.4, Vec3(1, 2, -1).normalized()));
+    pose.grip_number = contact_at(world, 0).model.grip_number;
+    REQUIRE(step_world(world, pose, contact_at(world, 0).model).finite);
+    const Quat turned = pose.molecule->orientation;
+    const std::vector<Vec3> before = world.resource<AtomTable>().positions;
+
+    LetGoEdit{}.apply(world, 0);
+    TakeEdit{name}.apply(world, 0);
+
+    CHECK(grip_of(world, hand).pose.orientation.angularDistance(turned) < 1e-12);
+    pose.molecule = grip_of(world, hand).pose;
+    pose.grip_number = contact_at(world, 0).model.grip_number;
+    REQUIRE(step_world(world, pose, contact_at(world, 0).model).finite);
+    const std::vector<Vec3>& after = world.resource<AtomTable>().positions;
+    for (std::size_t i = 0; i < after.size(); ++i) CHECK((after[i] - before[i]).norm() < 1e-9);
+
+    // From the start again it is as loaded.
+    PutBackEdit{}.apply(world, 0);
+    CHECK(grip_of(world, hand).pose.orientation.angularDistance(Quat::Identity()) < 1e-12);
+    LetGoEdit{}.apply(world, 0);
+    TakeEdit{name}.apply(world, 0);
+    CHECK(grip_of(world, hand).pose.orientation.angularDistance(Quat::Identity()) < 1e-12);
+}
+
 TEST_CASE("a restraint pulls at both ends, and marks measure", "[simulation][edit]") {
     World world = load_two();
     const Vec3 apart =

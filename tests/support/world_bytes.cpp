@@ -76,14 +76,14 @@ void add_atoms(const World& world, Bytes& bytes) {
     bytes << atoms.names << atoms.positions << atoms.element << atoms.mass << atoms.charge
           << atoms.sqrt_epsilon << atoms.half_rmin << atoms.type << atoms.bonds << atoms.type_names;
     bytes << world.resource<Interactions>().replaced_pairs;
-    world.each<Molecule, Mobility, Pose>(
-        [&](Entity entity, const Molecule& molecule, const Mobility& mobility, const Pose& pose) {
+    world.each<Molecule, Mobility>(
+        [&](Entity entity, const Molecule& molecule, const Mobility& mobility) {
             bytes << entity << molecule.name << molecule.atoms.first << molecule.atoms.count
-                  << molecule.reference_atom << mobility.motion << mobility.shape << pose.place
-                  << pose.orientation;
+                  << molecule.reference_atom << mobility.motion << mobility.shape;
         });
-    world.each<RigidShape>(
-        [&](Entity entity, const RigidShape& shape) { bytes << entity << shape.atoms; });
+    world.each<RigidShape>([&](Entity entity, const RigidShape& shape) {
+        bytes << entity << shape.atoms << shape.orientation;
+    });
     world.each<Spring>([&](Entity entity, const Spring& s) {
         bytes << entity << s.ends << s.place << s.k << s.length << s.owner;
     });

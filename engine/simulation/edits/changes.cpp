@@ -65,6 +65,9 @@ void release(World& world, Entity hand) {
     if (!held) return;
     const Grip grip = *held;
     const bool held_whole = holds_whole(world, hand);
+    if (RigidShape* const shape = world.write<RigidShape>(grip.molecule);
+        shape && held_whole && grip.base < 0)
+        shape->orientation = grip.pose.orientation;
     world.remove<Grip>(hand);
     world.remove<Spring>(hand);
     take_hold_anew(world, hand);

@@ -28,8 +28,6 @@ void PutBackEdit::apply(World& world, std::size_t slot) const {
                                ? atoms.positions[molecule.reference_atom]
                                : middle_of(changed, held_part_of(changed, hand));
         grip->pose = {place - grip->anchor, Quat::Identity()};
-        *changed.write<Pose>(grip->molecule) = {atoms.positions[molecule.reference_atom],
-                                                Quat::Identity()};
         if (changed.find<RigidShape>(grip->molecule)) set_shape(changed, grip->molecule);
         take_hold_anew(changed, hand);
     });

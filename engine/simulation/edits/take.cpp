@@ -79,8 +79,8 @@ void TakeEdit::apply(World& world, std::size_t slot) const {
         if (is_whole) {
             mobility.motion = motion_in_hand(changed, hand);
             grip.freedom = mobility.motion == Motion::WithHandle ? 6 : 3;
-            grip.pose.orientation = changed.find<Pose>(part.molecule)->orientation;
-            set_shape(changed, part.molecule);
+            grip.pose.orientation = orientation_of(changed, part.molecule);
+            set_shape(changed, part.molecule, grip.pose.orientation);
         } else if (other == Entity{}) {
             free_for_spring(mobility);
         }

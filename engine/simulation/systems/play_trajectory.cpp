@@ -63,7 +63,6 @@ void hold_in_frame(World& world, Entity hand) {
     const Molecule& molecule = *world.find<Molecule>(grip.molecule);
     const Molecule& origin = *world.find<Molecule>(grip.measured_from);
     const Vec3 place = atoms.positions[molecule.reference_atom];
-    *world.write<Pose>(grip.molecule) = {place, Quat::Identity()};
     set_shape(world, grip.molecule);
     grip.anchor = atoms.positions[origin.reference_atom];
     grip.pose = {place - grip.anchor, Quat::Identity()};
@@ -82,9 +81,6 @@ void show(World& world, Playback& playback, std::size_t frame) {
     atoms.positions = std::move(read.positions);
     playback.shown = frame;
     playback.time_ps = read.time_ps;
-    world.write_each<Pose, Molecule>([&](Entity, Pose& pose, const Molecule& molecule) {
-        pose = {atoms.positions[molecule.reference_atom], Quat::Identity()};
-    });
     for (const Entity hand : find_hands(world)) {
         if (world.find<Grip>(hand)) hold_in_frame(world, hand);
     }

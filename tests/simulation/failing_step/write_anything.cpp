@@ -50,7 +50,7 @@ constexpr Write writes[] = {
     },
     [](World& world, std::mt19937&) { world.write<Interactions>().replaced_pairs.push_back({}); },
     [](World& world, std::mt19937&) {
-        world.write_each<Pose>([](Entity, Pose& pose) { pose.place = Vec3::Zero(); });
+        world.write_each<RigidShape>([](Entity, RigidShape& shape) { shape.atoms.clear(); });
     },
     [](World& world, std::mt19937&) {
         world.write_each<Molecule>([](Entity, Molecule& molecule) { molecule.name += "X"; });

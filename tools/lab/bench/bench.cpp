@@ -102,7 +102,6 @@ BenchRow bench_transaction(const std::string& scene_name, World world, double st
         (void)world.write_if<Solver>();
         world.write_each<Hand>([](Entity, const Hand&) {});
         world.write_each<Grip>([](Entity, const Grip&) {});
-        world.write_each<Pose>([](Entity, const Pose&) {});
         world.write_each<Spring>([](Entity, const Spring&) {});
         world.write_each<Contact>([](Entity, const Contact&) {});
         world.commit();
