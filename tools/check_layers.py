@@ -22,7 +22,7 @@ SOURCES = ("SOURCES", "POSIX", "WINDOWS")
 SYSTEM = re.compile(r"(sys|linux|arpa|net|netinet)/|(aio|dirent|dlfcn|fcntl|glob|grp|io|langinfo|poll|pthread"
                     r"|pwd|sched|semaphore|signal|spawn|strings|syslog|termios|unistd|utime|windows|winsock2?)\.h$")
 # Modules that decide where molecules and hands go.
-REPEATABLE = {"assembly", "charmm", "core", "devices", "field", "forces", "haptics", "math", "simulation", "statics"}
+REPEATABLE = {"assembly", "charmm", "core", "devices", "field", "forces", "haptics", "math", "loading", "simulation", "statics"}
 ROUNDED = re.compile(r"std::(?:a?(?:sin|cos|tan)h?|atan2|exp2?|expm1|log(?:2|10|1p)?|pow|cbrt|hypot|erfc?)\(|AngleAxis\w*[ ({]|slerp\(|angularDistance\(|computeDirect\(")
 KEYWORDS = {*SOURCES, "DEPENDS", "LIBRARIES"}
 FOLDERS = ("engine", "devices", "tools", "tests")

@@ -323,8 +323,8 @@ void LiveSession::run_servo() {
 // ---- the simulation's thread -------------------------------------------------------------------
 
 // The same order as in lockstep: where a period begins, the last step's answer is published, and
-// the next step starts from the hands' poses at that moment. Commands are obeyed at once, between
-// steps.
+// the next step starts from the hands' poses at that moment. Commands are carried out at once,
+// between steps.
 void LiveSession::run_simulation() {
     LiveClock::Moment next = clock_.now();
     while (!stopping_) {
@@ -369,7 +369,7 @@ void LiveSession::run_simulation() {
     }
 }
 
-// Answers a question once the commands that were sent before it are obeyed.
+// Answers a question once the commands that were sent before it are carried out.
 void LiveSession::answer() {
     const std::lock_guard lock(mutex_);
     if (!question_ || !commands_.empty()) return;

@@ -156,7 +156,7 @@ private:
     void click(const MouseClick& click);
     void take_clicked();
     void take(const std::string& address);
-    void let_go();
+    void release();
     void put_back();
     bool refuse_in_replay();
     void edit(EditAction action);
@@ -256,7 +256,7 @@ private:
     std::string hover_;
     SteadyClock::time_point rests_since_ = SteadyClock::now();  // the mouse; or looked at anew
     bool drags_panel_ = false;  // the drag that is under way, or was the last one
-    SteadyClock::time_point heeded_ = SteadyClock::now();  // the device, for the last time
+    SteadyClock::time_point device_polled_ = SteadyClock::now();  // the device, for the last time
     RenderScale scale_;
     const SteadyClock::time_point start_ = SteadyClock::now();
     bool is_over_ = false;            // the last screenshot is due

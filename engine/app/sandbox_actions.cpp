@@ -167,8 +167,8 @@ void Sandbox::perform(Action action) {
         case Action::Remove:
             remove_held();
             break;
-        case Action::LetGo:
-            let_go();
+        case Action::Release:
+            release();
             break;
         case Action::PutBack:
             put_back();

@@ -3,9 +3,9 @@
 
 #include "core/load_error.h"
 #include "core/translate.h"
+#include "loading/molecules.h"
+#include "loading/sources.h"
 #include "scene/find_scene.h"
-#include "simulation/molecules.h"
-#include "simulation/sources.h"
 #include "view/find_room.h"
 
 #include <fmt/format.h>
@@ -101,12 +101,12 @@ bool Sandbox::refuse_in_replay() {
 
 void Sandbox::take(const std::string& address) {
     if (refuse_in_replay()) return;
-    edit(TakeEdit{address});
+    edit(GrabEdit{address});
 }
 
-void Sandbox::let_go() {
+void Sandbox::release() {
     if (refuse_in_replay()) return;
-    if (frame_.readout.holds_something) edit(LetGoEdit{});
+    if (frame_.readout.holds_something) edit(ReleaseEdit{});
 }
 
 void Sandbox::put_back() {

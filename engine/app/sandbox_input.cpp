@@ -115,8 +115,9 @@ void Sandbox::post_pad(const Input& input) {
 void Sandbox::read_device_view(const Input& input) {
     for (const WindowHand& each : hands_) each.device->attend(input.focused);
     constexpr double longest_s = 0.1;  // after a pause nothing leaps
-    const double passed_s = std::chrono::duration<double>(SteadyClock::now() - heeded_).count();
-    heeded_ = SteadyClock::now();
+    const double passed_s =
+        std::chrono::duration<double>(SteadyClock::now() - device_polled_).count();
+    device_polled_ = SteadyClock::now();
     const auto rate = hands_.front().device->view_rate();
     if (!rate.m_per_s.isZero() || !rate.rad_per_s.isZero()) take_camera();
     carry(camera_, rate, std::min(passed_s, longest_s));

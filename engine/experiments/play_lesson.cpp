@@ -7,6 +7,8 @@
 #include "devices/mouse_handle.h"
 #include "experiments/emulated_hand.h"
 #include "experiments/mouse_person.h"
+#include "loading/edit.h"
+#include "loading/load.h"
 #include "session/edit_player.h"
 #include "session/lesson.h"
 #include "session/lesson_meter.h"
@@ -14,9 +16,7 @@
 #include "session/plan_hand.h"
 #include "session/run_headless.h"
 #include "session/undo_history.h"
-#include "simulation/edit.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/step.h"
 
 #include <algorithm>
@@ -225,7 +225,7 @@ private:
         const auto apply = [&](EditAction action, const std::string& of) {
             history_.apply(world_, {0, 0, std::move(action), scene_.place_of(key + of)});
         };
-        if (!step.operator_take.empty()) apply(TakeEdit{step.operator_take}, ".operator_take");
+        if (!step.operator_take.empty()) apply(GrabEdit{step.operator_take}, ".operator_take");
         if (!step.operator_coupling.empty())
             apply(CouplingEdit{step.operator_coupling}, ".operator_coupling");
         hand_->go_on(plan_lead(step.operator_path), !step.operator_take.empty());

@@ -5,10 +5,10 @@
 #include "devices/emulated_hand.h"
 #include "devices/emulated_omni.h"
 #include "haptics/hand.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 
 #include <fmt/format.h>

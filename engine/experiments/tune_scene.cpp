@@ -10,6 +10,7 @@
 #include "experiments/emulated_hand.h"
 #include "formats/crd.h"
 #include "formats/psf.h"
+#include "loading/load.h"
 #include "math/eigenvectors.h"
 #include "prepare/phosphates.h"
 #include "prepare/region_choice.h"
@@ -18,7 +19,6 @@
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "statics/renewal.h"
 
 #include <fmt/format.h>

@@ -234,7 +234,7 @@ void ImdClient::check_delay() {
         set_state(ImdState::Connected, is_paused_ ? "is paused" : "sends frames");
     } else if (passed_s <= options_.lost_after_s) {
         // The hand cannot feel what these forces do.
-        let_go();
+        release_atoms();
         set_state(ImdState::Late, fmt::format("has not sent a frame for {:.1f} s", passed_s));
     } else {
         lose(fmt::format("has not sent a frame for {:.1f} s", passed_s), ImdLack::Order);
@@ -278,7 +278,7 @@ std::string ImdClient::pull(std::span<const std::int32_t> atoms, std::span<const
     return problem;
 }
 
-void ImdClient::let_go() {
+void ImdClient::release_atoms() {
     pull_.reset();
     if (phase_ != Phase::Running || pulled_.empty()) return;
     pull_.emplace();

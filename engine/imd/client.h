@@ -96,7 +96,7 @@ public:
     // these were not taken; what acted before then still does. While there is no room to send, the
     // newest stand in for older ones.
     std::string pull(std::span<const std::int32_t> atoms, std::span<const Vec3> forces);
-    void let_go();
+    void release_atoms();
     // Number of pulls sent, without releases.
     std::uint64_t pulls_sent() const noexcept { return pulls_sent_; }
 

@@ -254,12 +254,13 @@ void check_edit(const EditDescription& edit, std::size_t hands, const std::strin
     if (edit.hand >= hands) {
         problems.add(
             problems.place_of(whose),
-            fmt::format(
-                "'{}' is \"{}\", but the scene has {}; expected \"first\"{}, or "
-                "another table [[hand]]",
-                whose, edit_hand_names.at(edit.hand),
-                hands == 1 ? "one hand" : fmt::format("{} hands", hands),
-                hands == 1 ? "" : fmt::format(" to \"{}\"", edit_hand_names.at(hands - 1))));
+            fmt::format("'{}' is \"{}\", but the scene has {}; expected \"first\"{}{}", whose,
+                        edit_hand_names.at(edit.hand),
+                        hands == 1 ? "one hand" : fmt::format("{} hands", hands),
+                        hands == 1   ? ""
+                        : hands == 2 ? " or \"second\""
+                                     : fmt::format(" to \"{}\"", edit_hand_names.at(hands - 1)),
+                        hands < most_hands ? ", or another table [[hand]]" : ""));
     }
     const EditAction& action = edit.action;
     const std::string key = path + std::string(edit_names[action.index()]);

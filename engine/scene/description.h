@@ -294,8 +294,8 @@ struct SceneDescription {
     StaticsDescription statics;
     std::optional<EngineDescription> engine;
     std::vector<HandDescription> hands{HandDescription{}};  // one to most_hands
-    DeviceDescription device;                               // of hands without their own
-    CouplingDescription coupling;                           // of hands without their own
+    DeviceDescription device;                               // for hands without one of their own
+    CouplingDescription coupling;                           // for hands without one of their own
     ViewDescription view;
     std::vector<LessonStepDescription> lesson;  // in the order of the file
     std::vector<EditDescription> edits;         // in the order of the file

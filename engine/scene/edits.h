@@ -1,5 +1,5 @@
 // The list of edits of a running scene. Each is one type: its fields, checks and name in the
-// history are in scene/edits/, what it does to a world in simulation/edits/. Scene files
+// history are in scene/edits/, what it does to a world in loading/edits/. Scene files
 // ([[edits]]), commands, journals, undo and windows go by this list.
 #pragma once
 #include "core/hands.h"
@@ -7,15 +7,15 @@
 #include "scene/edits/add.h"
 #include "scene/edits/appearance.h"
 #include "scene/edits/coupling.h"
+#include "scene/edits/grab.h"
 #include "scene/edits/kind.h"
-#include "scene/edits/let_go.h"
 #include "scene/edits/mobility.h"
 #include "scene/edits/pin.h"
 #include "scene/edits/put_back.h"
+#include "scene/edits/release.h"
 #include "scene/edits/remove.h"
 #include "scene/edits/reset.h"
 #include "scene/edits/restraint.h"
-#include "scene/edits/take.h"
 #include "scene/edits/undo.h"
 
 #include <array>
@@ -40,7 +40,7 @@ struct Address {
 std::optional<Address> find_address(std::string_view text);
 
 using EditAction =
-    std::variant<TakeEdit, LetGoEdit, PutBackEdit, AddEdit, RemoveEdit, PinEdit, RestraintEdit,
+    std::variant<GrabEdit, ReleaseEdit, PutBackEdit, AddEdit, RemoveEdit, PinEdit, RestraintEdit,
                  MobilityEdit, AppearanceEdit, CouplingEdit, ResetEdit, UndoEdit, RedoEdit>;
 
 inline const EditKind& kind_of(const EditAction& action) {
@@ -69,7 +69,7 @@ std::vector<std::string_view> list_with_engine(const std::variant<Edits...>* /*o
     (void)((Edits::kind.with_engine ? keys.push_back(Edits::kind.key) : void(), 0) + ...);
     return keys;
 }
-// Keys of those that are possible where a remote engine places the atoms.
+// Keys of the edits that are possible if a remote engine places the atoms.
 inline std::vector<std::string_view> list_edits_with_engine() {
     return list_with_engine(static_cast<const EditAction*>(nullptr));
 }

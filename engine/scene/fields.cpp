@@ -342,8 +342,9 @@ void visit_own(FieldVisitor& v, const Field& table, const Part& from, std::optio
 void visit_hands(FieldVisitor& v, SceneDescription& scene, bool is_remote) {
     const Field list{.key = "hand",
                      .meaning =
-                         "the Nth hand where there are several: [[hand]] with [hand.grab], "
-                         "and [hand.device] and [hand.coupling] where its own differ",
+                         "the Nth hand if there are several: [[hand]] with [hand.grab], and "
+                         "[hand.device] and [hand.coupling] if they differ from the scene's; as "
+                         "a setting hand[2].stroke, hand[2].grab.atom, hand[2].coupling.mode",
                      .lowest = 1,
                      .highest = most_hands};
     if (!v.is_list(list, scene.hands.size() > 1)) {

@@ -14,7 +14,7 @@
 namespace palpa {
 namespace {
 
-// Takes a table out of another; nothing where there is none.
+// Takes a table out of another; nothing if there is none.
 std::optional<toml::table> take_table(std::string_view key, toml::table& from) {
     toml::table* const inner = from[key].as_table();
     if (!inner) return std::nullopt;
@@ -23,13 +23,13 @@ std::optional<toml::table> take_table(std::string_view key, toml::table& from) {
     return taken;
 }
 
-// Puts a part of a hand into it, unless it has one: then the part stays where it is.
+// Moves a part of a hand from the scene's tables into the hand's, unless the hand has that part.
 void move_into(std::string_view key, toml::table& from, toml::table& hand) {
     if (hand.contains(key)) return;
     if (std::optional<toml::table> part = take_table(key, from)) hand.insert(key, std::move(*part));
 }
 
-// The list of hands, which is made of [hand] and [grab]. Null where `hand` is no table.
+// The list of hands, made of [hand] and [grab] if need be. Null if `hand` is no table.
 toml::array* list_of_hands(toml::table& root) {
     if (toml::array* const list = root["hand"].as_array()) return list;
     if (root.contains("hand") && !root["hand"].is_table()) return nullptr;
@@ -49,18 +49,26 @@ toml::table take_second(toml::table& root) {
     return std::move(*hand);
 }
 
-// A list of one hand as the tables that one hand has.
+// Moves the grip, device and coupling of the only hand into the tables of the scene.
+void move_parts_out(toml::table& hand, toml::table& root) {
+    if (hand.contains("grab") && root.contains("grab")) return;
+    for (const std::string_view part : {"grab", "device", "coupling"}) {
+        std::optional<toml::table> own = take_table(part, hand);
+        if (!own) continue;
+        toml::table outer;
+        outer.insert(part, std::move(*own));
+        merge(std::move(outer), root);
+    }
+}
+
+// Writes a list of one hand as the tables that one hand has.
 void flatten(toml::table& root) {
     toml::array* const list = root["hand"].as_array();
     if (!list || list->size() != 1 || !list->front().is_table()) return;
-    if (list->front().as_table()->contains("grab") && root.contains("grab")) return;
-    toml::table hand = std::move(*list->front().as_table());
-    for (const std::string_view part : {"grab", "device", "coupling"})
-        if (std::optional<toml::table> own = take_table(part, hand)) {
-            toml::table outer;
-            outer.insert(part, std::move(*own));
-            merge(std::move(outer), root);
-        }
+    toml::table& only = *list->front().as_table();
+    if (only.contains("grab") && root.contains("grab")) return;
+    toml::table hand = std::move(only);
+    move_parts_out(hand, root);
     root.insert_or_assign("hand", std::move(hand));
 }
 
@@ -68,7 +76,9 @@ void flatten(toml::table& root) {
 std::optional<std::int64_t> find_hand_number(std::string_view word) {
     constexpr std::string_view begin = "hand[";
     if (!word.starts_with(begin) || !word.ends_with(']')) return std::nullopt;
-    return find_integer(word.substr(begin.size(), word.size() - begin.size() - 1));
+    word = word.substr(begin.size(), word.size() - begin.size() - 1);
+    const std::optional<std::int64_t> number = find_integer(word);
+    return number && std::to_string(*number) == word ? number : std::nullopt;
 }
 
 }  // namespace
@@ -90,23 +100,30 @@ void gather_hands(toml::table& root) {
         toml::array* const list = list_of_hands(root);
         if (list && list->size() == 1) list->push_back(take_second(root));
     }
+    if (toml::table* const only = root["hand"].as_table()) return move_parts_out(*only, root);
     toml::array* const list = root["hand"].as_array();
     if (!list || list->empty() || !list->front().is_table()) return;
     move_into("grab", root, *list->front().as_table());
     flatten(root);
 }
 
+bool names_further_hand(std::string_view key) {
+    const std::string_view word = trimmed(key.substr(0, key.find('.')));
+    return word == "second" || find_hand_number(word).value_or(1) > 1;
+}
+
 std::pair<toml::table*, std::string> find_table_of(const std::string& key, const TextPlace& place,
                                                    toml::table& root) {
     const std::size_t dot = key.find('.');
-    const std::string word = key.substr(0, dot);
+    std::string word(trimmed(std::string_view(key).substr(0, dot)));
+    if (word == "\"hand\"" || word == "'hand'") word = "hand";
     std::string rest = dot == key.npos ? "" : key.substr(dot + 1);
     const bool has_list = root["hand"].is_array();
     std::optional<std::int64_t> number = find_hand_number(word);
     if (word == "second") {
         number = 2;
         if (rest.starts_with("hand.")) rest.erase(0, 5);
-    } else if (has_list && word == "hand") {
+    } else if (word == "hand") {
         number = 1;
     } else if (has_list && word == "grab") {
         number = 1;

@@ -781,14 +781,12 @@ SceneDescription parse_scene(std::string_view text, const fs::path& file,
                         "an empty scene; expected [force_field], [molecules.NAME] and [grab]");
     }
     gather_hands(root);
-    bool allows_outside = false;
-    for (const std::string& setting : settings) {
-        if (setting == allow_outside) {
-            allows_outside = true;
-        } else {
-            apply_setting(setting_origins[0], setting, root);
-        }
-    }
+    const bool allows_outside = std::ranges::find(settings, allow_outside) != settings.end();
+    // Settings that add hands first: with one hand, "hand[1].coupling" means [coupling].
+    for (const bool adds_hands : {true, false})
+        for (const std::string& setting : settings)
+            if (setting != allow_outside && names_further_hand(setting) == adds_hands)
+                apply_setting(setting_origins[0], setting, root);
 
     SceneDescription scene;
     scene.file = file;

@@ -75,10 +75,10 @@ void AccuracyLog::add_step(const RelaxStepReport& relaxed, std::optional<double>
     if (relaxed.estimated_error_pN && error_pN) add_error(*error_pN);
 }
 
-void AccuracyLog::add_answer(const ContactModel& answer) {
+void AccuracyLog::add_model(const ContactModel& model) {
     constexpr std::uint64_t every = 100;
     if (cap_N_per_m_ <= 0 || ++steps_ % every != 0) return;
-    add_error(1e12 * (answer.force_newton - rendered_newton_).norm());
+    add_error(1e12 * (model.force_newton - rendered_newton_).norm());
 }
 
 void AccuracyLog::add_error(double error_pN) {

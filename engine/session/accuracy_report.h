@@ -42,7 +42,7 @@ struct UnmetRequirements {
 };
 UnmetRequirements find_unmet(const AccuracyReport& report);
 
-// Gathers it tick by tick and step by step, in as much memory however long the run is.
+// Gathers the report tick by tick and step by step, in a bounded memory.
 class AccuracyLog {
 public:
     // Creates the log of one hand, by its number from 0. There is no report if its coupling
@@ -52,10 +52,10 @@ public:
     void add(const ServoTick& tick) noexcept;
     // `error_pN`: the last estimate for this hand, which counts if one ended in this step.
     void add_step(const RelaxStepReport& relaxed, std::optional<double> error_pN);
-    // Of a scene in which nothing moves by itself: the answer to the pose of the tick added last,
-    // which the servo has rendered from the answer before. One of a hundred counts as an error
+    // For a scene in which nothing moves by itself: adds the contact model of the pose of the last
+    // tick, which the servo rendered from the model before. Every hundredth counts as an error
     // estimate.
-    void add_answer(const ContactModel& answer);
+    void add_model(const ContactModel& model);
 
     std::optional<AccuracyReport> report(double step_median_us) const;
 

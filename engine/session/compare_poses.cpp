@@ -3,7 +3,6 @@
 #include "math/superpose.h"
 #include "simulation/components.h"
 #include "simulation/grip_queries.h"
-#include "simulation/molecules.h"
 #include "simulation/resources.h"
 
 #include <algorithm>
@@ -63,7 +62,7 @@ PoseComparison::PoseComparison(const World& world) {
     const Entity hand = hand_at(world, 0);
     const std::vector<std::uint32_t> held = held_atoms(world, hand);
     held_ = find_symmetries(atoms, held);
-    const Entity other = molecule_called(world, world.resource<GrabSettings>().measured_from);
+    const Entity other = molecule_called(world, world.find<GripSettings>(hand)->measured_from);
     const AtomRange frame = other == Entity{} ? AtomRange{} : world.find<Molecule>(other)->atoms;
     for (const std::vector<std::uint32_t>& residue : list_residues(atoms, held)) {
         if (!is_amino_acid(atoms, residue)) continue;

@@ -423,7 +423,7 @@ private:
 
 void complete_caps(const SceneDescription& scene, Journal& journal) {
     if (journal.version >= first_with_caps) return;
-    const auto complete = [&](HandDevice& device) {  // those journals have scenes of one device
+    const auto complete = [&](HandDevice& device) {  // such a journal has a scene of one device
         device.spec.viscosity_N_s_per_m = scene.device.viscosity_N_s_per_m;
     };
     std::ranges::for_each(journal.devices, complete);

@@ -2,11 +2,12 @@
 
 #include "core/assertion.h"
 #include "core/load_error.h"
+#include "loading/edit.h"
+#include "loading/engine_atoms.h"
+#include "loading/load.h"
 #include "session/run_headless.h"
 #include "simulation/coupling.h"
-#include "simulation/edit.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/playback.h"
 #include "simulation/remote_engine.h"
@@ -124,7 +125,7 @@ void LiveSimulation::play(const StepEvent& event) {
 void LiveSimulation::play(const HoldEvent& /*event*/) {
     const std::vector<Entity> hands = find_hands(world_);
     for (std::size_t slot = 0; slot < devices_.size(); ++slot) {
-        take_hold(world_, hands[slot], poses_[slot]);
+        begin_grip(world_, hands[slot], poses_[slot]);
         post(slot, without_force(contact_of(world_, hands[slot]).sent));
     }
 }
@@ -158,7 +159,7 @@ void LiveSimulation::play(const CommandEvent& event) {
 
 void LiveSimulation::play(const DeviceEvent& event) {
     devices_[event.slot] = event.device;
-    take_hold_anew(list_starts());
+    begin_new_grips(list_grip_numbers());
     post_orders();  // or it would take one that was meant for the device before
 }
 
@@ -175,9 +176,7 @@ void LiveSimulation::set(const LiveSettings& settings) {
     if (can_build_laws(settings.coupling)) {
         coupling_of(scene_, 0) = settings.coupling;
     } else {
-        readout_.problem =
-            "eq. 2 with these values cannot reach the slopes A_f_max and A_f_min, so the previous "
-            "force law stays; change F_h1, F_h2 or F_0";
+        readout_.problem = std::string(why_no_laws) + "; the previous force law stays";
     }
     try {
         for (const HandDevice& device : devices_)
@@ -205,7 +204,7 @@ void LiveSimulation::apply(const Reset& reset) {
         return;
     }
     if (reset.start_angstrom) scene_.hands.front().start_angstrom = reset.start_angstrom;
-    const std::vector<std::uint32_t> last_starts = list_starts();
+    const std::vector<std::uint32_t> last_grip_numbers = list_grip_numbers();
     renewals_.await();
     try {
         World start = load_world(as_live(scene_));
@@ -227,7 +226,7 @@ void LiveSimulation::apply(const Reset& reset) {
     time_s_ = 0;
     ++edition_;
     readout_.problem.clear();
-    take_hold_anew(last_starts);
+    begin_new_grips(last_grip_numbers);
     post_orders();
 }
 
@@ -393,18 +392,18 @@ std::optional<UnbindingPath> LiveSimulation::unbinding() const {
     return unbinding_->unbinding();
 }
 
-std::vector<std::uint32_t> LiveSimulation::list_starts() const {
+std::vector<std::uint32_t> LiveSimulation::list_grip_numbers() const {
     std::vector<std::uint32_t> starts;
     for (const Entity hand : find_hands(world_))
         starts.push_back(contact_of(world_, hand).sent.model.grip_number);
     return starts;
 }
 
-void LiveSimulation::take_hold_anew(std::span<const std::uint32_t> last_starts) {
+void LiveSimulation::begin_new_grips(std::span<const std::uint32_t> last_grip_numbers) {
     ++restarts_;
     const std::vector<Entity> hands = find_hands(world_);
     for (std::size_t slot = 0; slot < hands.size(); ++slot)
-        world_.write<Contact>(hands[slot])->sent.model.grip_number = last_starts[slot] + 1;
+        world_.write<Contact>(hands[slot])->sent.model.grip_number = last_grip_numbers[slot] + 1;
     play(HoldEvent{});
 }
 

@@ -108,8 +108,8 @@ private:
         return {{coupling_of(scene_, 0), scene_.period_ms}, additions_};
     }
     void follow_unbinding();
-    void take_hold_anew(std::span<const std::uint32_t> last_starts);
-    std::vector<std::uint32_t> list_starts() const;
+    void begin_new_grips(std::span<const std::uint32_t> last_grip_numbers);
+    std::vector<std::uint32_t> list_grip_numbers() const;
     void post(std::size_t slot, const LocalContactModel& contact);
     void post_order(std::size_t slot);
     void post_orders();

@@ -6,11 +6,11 @@
 #include "core/units.h"
 #include "haptics/hand.h"
 #include "haptics/plant.h"
+#include "loading/edit.h"
 #include "molecule/coincident_atoms.h"
 #include "session/edit_player.h"
 #include "session/undo_history.h"
 #include "simulation/components.h"
-#include "simulation/edit.h"
 #include "simulation/grip_queries.h"
 #include "simulation/playback.h"
 #include "simulation/remote_engine.h"
@@ -318,24 +318,38 @@ std::vector<std::string> list_hand_warnings(const SceneDescription& scene, const
     return warnings;
 }
 
+namespace {
+
+// Adds the warnings of one hand, each behind `whose`.
+void warn_of_hand(const Summary& hand, std::string_view whose, std::vector<std::string>& warnings) {
+    if (hand.safety_share > 0) {
+        warnings.push_back(fmt::format("{}for {:.1f} % of the time: {}", whose,
+                                       100 * hand.safety_share, describe(hand.gravest)));
+    }
+    if (hand.went_through) {
+        warnings.push_back(
+            fmt::format("{}the hand pushed the molecule through the other one", whose));
+    }
+    if (hand.stopped) {
+        warnings.push_back(fmt::format("{}a force was not finite: the device was stopped", whose));
+    }
+}
+
+}  // namespace
+
 void warn_of_outcome(Summary& summary) {
-    if (summary.safety_share > 0) {
-        summary.warnings.push_back(fmt::format(
-            "for {:.1f} % of the time: {}", 100 * summary.safety_share, describe(summary.gravest)));
-    }
-    if (summary.went_through) {
-        summary.warnings.emplace_back("the hand pushed the molecule through the other one");
-    }
-    if (summary.stopped) {
-        summary.warnings.emplace_back("a force was not finite: the device was stopped");
-    }
+    std::vector<std::string>& warnings = summary.warnings;
+    warn_of_hand(summary, "", warnings);
+    for (std::size_t i = 0; i < summary.other_hands.size(); ++i)
+        warn_of_hand(summary.other_hands[i], fmt::format("{} hand: ", edit_hand_names.at(i + 1)),
+                     warnings);
     if (summary.steps_not_finite > 0) {
-        summary.warnings.push_back(
+        warnings.push_back(
             fmt::format("{} of {} steps gave results that were not finite and were discarded",
                         summary.steps_not_finite, summary.steps));
     }
     if (summary.sums_in_double > 0) {
-        summary.warnings.push_back(
+        warnings.push_back(
             fmt::format("{} of {} force sums were computed in double precision and took longer, "
                         "because atoms were closer than {} Å or farther than {} Å",
                         summary.sums_in_double, summary.sums, nearest_single_precision,
@@ -466,7 +480,7 @@ public:
             if (report.relaxed)
                 accuracy_[i].add_step(*report.relaxed, find_error_estimate(world, hands[i]));
             else
-                accuracy_[i].add_answer(contact_of(world, hands[i]).sent.model);
+                accuracy_[i].add_model(contact_of(world, hands[i]).sent.model);
         }
         if (!report.relaxed) return;
         relaxation_.add(*report.relaxed, report.took_us);

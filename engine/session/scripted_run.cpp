@@ -8,7 +8,6 @@
 #include "simulation/atom_directory.h"
 #include "simulation/components.h"
 #include "simulation/grip_queries.h"
-#include "simulation/molecules.h"
 #include "simulation/resources.h"
 #include "simulation/select_in_world.h"
 

@@ -51,8 +51,8 @@ Statistics::Statistics(double tick_s) : tick_s_(tick_s) {
         axis.resize(static_cast<std::size_t>(std::lround(ripple_window_s / tick_s)), 0.0);
 }
 
-// Another start is of another molecule, perhaps, and not the hand's doing. One that is held still
-// may be none.
+// A new grip begins the path anew: the molecule may be another one, and the jump is not a movement
+// of the hand. A contact that is still may have no molecule.
 void Statistics::add_place(const ContactModel& contact) {
     const Vec3& place = contact.molecule.place_angstrom;
     const double distance = place.norm();

@@ -3,8 +3,8 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "core/translate.h"
+#include "loading/edit.h"
 #include "scene/write_scene.h"
-#include "simulation/edit.h"
 
 #include <algorithm>
 #include <iterator>
@@ -78,8 +78,8 @@ void UndoHistory::note_edit(World before, const EditDescription& edit) {
     Entry entry{palpa::undo_name(edit.action), std::move(before)};
     entry.is_of_coupling = kind_of(edit.action).sets_coupling;
     has_changed_coupling_ = entry.is_of_coupling;
-    const bool takes = std::holds_alternative<TakeEdit>(edit.action);
-    const bool lets_go = std::holds_alternative<LetGoEdit>(edit.action);
+    const bool takes = std::holds_alternative<GrabEdit>(edit.action);
+    const bool lets_go = std::holds_alternative<ReleaseEdit>(edit.action);
     if (takes || lets_go) {
         const auto ended = std::ranges::find(undo_, edit.hand, &Entry::grip);
         const bool is_last = ended != undo_.end() && std::next(ended) == undo_.end();

@@ -66,6 +66,13 @@ struct Hand {
     bool turns = false;            // the rotation of the handle turns rigid molecules
 };
 
+// The scene's settings for what the hand takes, and where it began.
+struct GripSettings {
+    std::string measured_from;                 // name of a molecule, see GrabDescription
+    double spring_kcal_per_mol_angstrom2 = 0;  // stiffness of its spring
+    Vec3 start_offset = Vec3::Zero();          // Å, start of the hand from its place at rest
+};
+
 // The hold of a hand on a molecule: as a whole, or on some of its atoms by the Spring of the hand's
 // entity. Positions are relative to `anchor`.
 struct Grip {

@@ -27,7 +27,7 @@ ForceLaw guarded_force_law(const CouplingDescription& c,
             break;
         case ForceLawChoice::Calibrated:
             if (const auto law = PrintedForceLaw::find_calibrated(parameters)) return *law;
-            break;  // see can_build_laws
+            break;  // no such law (can_build_laws)
         case ForceLawChoice::Constant:
             return ConstantForceLaw{c.A_f};
         case ForceLawChoice::Perceptual:
@@ -101,14 +101,7 @@ namespace {
 
 void renew_contacts(World& world) {
     if (const auto within_pN = find_tolerance(world)) set_tolerance(world, *within_pN);
-    for (const Entity hand : find_hands(world)) {
-        if (!world.find<Grip>(hand)) continue;  // it feels nothing in any mode
-        update_near(world, hand);
-        LocalContactModel& contact = world.write<Contact>(hand)->sent;
-        const std::uint32_t grip_number = contact.model.grip_number;
-        contact = build_local_contact(world, hand, {});
-        contact.model.grip_number = grip_number;
-    }
+    for (const Entity hand : find_hands(world)) renew_contact(world, hand);
 }
 
 }  // namespace
@@ -125,12 +118,7 @@ void set_couplings(const SceneDescription& scene, World& world) {
 void change_coupling(const std::vector<std::string>& settings, Entity hand, World& world) {
     const Coupling& before = coupling_of(world, hand);
     const CouplingDescription changed = with_settings(before.description, settings);
-    if (!can_build_laws(changed)) {
-        throw LoadError(
-            {},
-            "eq. 2 with these F_h1_N, F_h2_N and F_0_nN cannot have the slopes A_f_max at 0 "
-            "and A_f_min at F_0; expected other values, or force_law = \"printed\"");
-    }
+    if (!can_build_laws(changed)) throw LoadError({}, why_no_laws);
     const bool is_own = before.is_own;
     for (const Entity other : find_hands(world)) {
         if (other == hand || !(is_own || coupling_of(world, other).is_own))

@@ -92,6 +92,14 @@ std::vector<std::uint32_t> held_atoms(const World& world, Entity hand) {
     return atoms;
 }
 
+Entity molecule_called(const World& world, std::string_view name) noexcept {
+    Entity found;
+    world.each<Molecule>([&](Entity entity, const Molecule& molecule) {
+        if (molecule.name == name) found = entity;
+    });
+    return found;
+}
+
 std::vector<std::uint32_t> all_atoms_of(const World& world, Entity molecule) {
     std::vector<std::uint32_t> atoms(world.find<Molecule>(molecule)->atoms.count);
     std::iota(atoms.begin(), atoms.end(), 0U);
@@ -146,6 +154,19 @@ Quat orientation_of(const World& world, Entity molecule) {
     }
     const RigidShape* const shape = world.find<RigidShape>(molecule);
     return shape ? shape->orientation : Quat::Identity();
+}
+
+void set_shape(World& world, Entity entity, const Quat& orientation) {
+    const Molecule& molecule = *world.find<Molecule>(entity);
+    const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+    RigidShape shape{{}, orientation};
+    const Mat3 back = orientation.toRotationMatrix().transpose();
+    const bool is_turned = orientation.coeffs() != Quat::Identity().coeffs();
+    for (std::uint32_t i = 0; i < molecule.atoms.count; ++i) {
+        const Vec3 arm = positions[molecule.atoms.first + i] - positions[molecule.reference_atom];
+        shape.atoms.push_back(is_turned ? Vec3(back * arm) : arm);
+    }
+    world.set(entity, std::move(shape));
 }
 
 Vec3 held_place(const World& world, Entity hand) noexcept {

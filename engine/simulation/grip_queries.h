@@ -45,6 +45,9 @@ const ModelSpring* spring_of(const World& world, Entity hand) noexcept;
 // The held atoms: those at its spring, or all of the molecule.
 std::vector<std::uint32_t> held_atoms(const World& world, Entity hand);
 
+// A null entity if no molecule has that name.
+Entity molecule_called(const World& world, std::string_view name) noexcept;
+
 // All atoms of a molecule, counted from its first.
 std::vector<std::uint32_t> all_atoms_of(const World& world, Entity molecule);
 
@@ -60,6 +63,10 @@ std::vector<std::uint32_t> atoms_called(const World& world, Entity molecule, std
 
 // Rotation of a molecule that no hand holds, since it was loaded or the mechanics were built.
 Quat orientation_of(const World& world, Entity molecule);
+
+// Makes a molecule rigid at its present position, which is turned by `orientation` from the shape
+// as loaded.
+void set_shape(World& world, Entity molecule, const Quat& orientation = Quat::Identity());
 
 // Position of the held molecule's reference atom, or of the hand's end of the spring (Å, world
 // frame). The hand must hold something.

@@ -148,7 +148,7 @@ World build_mechanics_world(const SceneDescription& scene, TorsionModel model,
     World world;
     const Entity hand = world.create();
     world.set(hand, Hand{});
-    world.set(hand, build_coupling(scene.coupling, false));
+    world.set(hand, build_coupling(coupling_of(scene, 0), false));
     const Entity all = world.create();
     world.set(all, Molecule{"", {0, static_cast<std::uint32_t>(model.reference.size())}});
     Grip grip;

@@ -22,7 +22,8 @@ namespace palpa {
 struct EngineAtoms {
     std::vector<std::int32_t> in_table;  // for each atom that the engine sends
     std::vector<std::int32_t>
-        in_engine;  // for each atom of the table; atoms without an index do not move
+        in_engine;          // for each atom of the table; atoms without an index do not move
+    std::string listed_in;  // the file that lists the engine's atoms, or "the scene"
 };
 
 // The solver of such a world (simulation/solver.h). Copies of a world share the connection.
@@ -30,7 +31,6 @@ struct RemoteEngine {
     EngineDescription settings;
     std::shared_ptr<const EngineAtoms> atoms;
     std::shared_ptr<ImdClient> client;
-    std::string listed_in;    // file that lists its atoms, for messages
     bool is_awaited = false;  // steps wait for a frame (without a window)
 
     std::uint64_t frames = 0;         // frames received
@@ -63,18 +63,8 @@ EngineSpring find_engine_spring(const World& world, Entity hand) noexcept;
 // Centre of mass of the held atoms in the table, Å.
 Vec3 find_middle(const AtomTable& table, const EngineHold& hold) noexcept;
 
-// Adds the atoms of a molecule of the scene with names, masses, charges and bonds, without
-// parameters. Without a topology, masses are those of the elements and bonds follow from distances.
-// If the structure is a PSF file, all atoms are at the origin. Throws LoadError as the readers do.
-AtomRange add_engine_atoms(const Source& source, AtomTable& table);
-
-// The mapping according to `engine.atoms`. Throws LoadError for atoms of the scene that are
-// missing, occur twice or have another mass, and for an index file that names other atoms than the
-// scene has.
-EngineAtoms find_engine_atoms(const SceneDescription& scene, const AtomTable& table);
-
 // Makes it the solver of a world with molecules; does not connect yet.
-void set_remote_engine(const SceneDescription& scene, World& world);
+void set_remote_engine(const EngineDescription& settings, EngineAtoms atoms, World& world);
 
 // Rebuilds the springs of all hands from what they hold.
 void hold_engine_atoms(World& world);
@@ -85,10 +75,6 @@ void carry_engine(const World& from, World& to);
 // Reads the newest frame, connecting first if needed. Waits for one if steps wait; false if none
 // has arrived.
 bool take_newest_frame(World& world, RemoteEngine& engine);
-
-// True if the positions come from the engine alone, because a molecule's structure is a PSF file;
-// until the first frame they are at the origin.
-bool lacks_coordinates(const SceneDescription& scene);
 
 // Waits for the first frame. Throws EngineLost.
 void await_engine(World& world, RemoteEngine& engine);

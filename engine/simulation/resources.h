@@ -57,13 +57,6 @@ struct MechanicsSettings {
     StaticsDescription statics;
 };
 
-// The settings of grips that edits make, and where hands began.
-struct GrabSettings {
-    std::string measured_from;                 // name of a molecule, see GrabDescription
-    double spring_kcal_per_mol_angstrom2 = 0;  // stiffness of a hand's spring
-    std::vector<Vec3> start_offsets;           // Å, start of each hand from its place at rest
-};
-
 // Bonded terms of all molecules in the order of the table; empty until something mobile needs them.
 struct BondedTerms {
     std::shared_ptr<const Connectivity> connectivity;

@@ -117,8 +117,8 @@ std::optional<FollowingAtoms> find_following(const World& world, Entity hand,
 // Energy of the mobile parts, kcal/mol, without constant terms and without the springs of clients.
 double find_energy(const World& world) noexcept;
 
-// The last error estimate of the force on a hand, pN; of second order that of the hand with the
-// largest. `find_error` makes new ones.
+// The last error estimate of the force on a hand, pN; with second order, the largest of all hands.
+// `find_error` makes new ones.
 std::optional<double> find_error_estimate(const World& world, Entity hand);
 void find_error(World& world);
 

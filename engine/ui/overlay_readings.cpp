@@ -2,9 +2,9 @@
 #include "core/translate.h"
 #include "haptics/gains.h"
 #include "haptics/hand.h"
+#include "loading/load.h"
 #include "simulation/coupling.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "ui/layout.h"
 #include "ui/overlay.h"
 

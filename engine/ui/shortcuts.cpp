@@ -15,7 +15,7 @@ constexpr std::array list = std::to_array<Shortcut>({
      for_translation("undo a change, a grip or a pull")},
     {Key::Z, true, Action::Redo, for_translation("Ctrl+Shift+Z"), for_translation("redo"), true},
     {Key::Y, true, Action::Redo, for_translation("Ctrl+Y"), for_translation("redo")},
-    {Key::G, false, Action::LetGo, "G", for_translation("let go of the molecule in hand")},
+    {Key::G, false, Action::Release, "G", for_translation("let go of the molecule in hand")},
     {Key::R, false, Action::PutBack, for_translation("Shift+R"),
      for_translation("put the molecule in hand back to where it was"), true},
     {Key::X, false, Action::OtherHand, "X", for_translation("switch the mouse to the other hand")},

@@ -23,7 +23,7 @@ enum class Action {
     Guarded,
     Undo,
     Redo,
-    LetGo,
+    Release,
     PutBack,
     OtherHand,
     Add,

@@ -202,13 +202,10 @@ void Past::add_trail(double trail_s, FrameScene& frame) const {
 std::optional<Vec3> find_resting_place(const World& world, Entity hand) {
     constexpr std::size_t most_pairs = 2000;  // of which a search takes 0.1 s
     const Grip* const grip = world.find<Grip>(hand);
-    const GrabSettings* const settings = world.find_resource<GrabSettings>();
+    const GripSettings* const settings = world.find<GripSettings>(hand);
     if (!grip || !settings || !places_atoms(world)) return std::nullopt;
-    const std::vector<Entity> hands = find_hands(world);
-    const auto slot = static_cast<std::size_t>(std::ranges::find(hands, hand) - hands.begin());
-    if (slot >= settings->start_offsets.size()) return std::nullopt;
     if (grip->freedom > 1) {
-        const Vec3& offset = settings->start_offsets[slot];
+        const Vec3& offset = settings->start_offset;
         return grip->anchor + grip->line_origin - Vec3(0, offset.y(), offset.z());
     }
     const std::size_t pairs = held_range(world, hand).count * count_environment(world, hand);

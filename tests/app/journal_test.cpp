@@ -7,10 +7,10 @@
 #include "devices/emulated_omni.h"
 #include "devices/mouse_handle.h"
 #include "imd/client.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "session/play_journal.h"
 #include "session/replay.h"
-#include "simulation/load.h"
 #include "tests/support/load_error_of.h"
 #include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
@@ -118,7 +118,7 @@ TEST_CASE("what a client pulls in a session is played again to the bit",
         TwoMice live(scene, 1, &server);
         live.edit(AddEdit{"TIP3", "", "free", {0, 0, 60}});
         live.edit(MobilityEdit{"free", Motion::Free, {}});
-        live.edit(TakeEdit{"free:1"});  // the hand feels what a client pulls at
+        live.edit(GrabEdit{"free:1"});  // the hand feels what a client pulls at
         REQUIRE(live.wait_until([](const LiveFrame& f) { return f.places.size() == 9; }));
         REQUIRE(live.wait_for_steps(5));
         live.session->begin_recording(recording);
@@ -176,12 +176,12 @@ TEST_CASE("a session that was recorded from its middle is played again to the bi
                    Contains("another recording is running"));
         live.session->move_hand(Vec3(-0.09, 0, 0.01));
         REQUIRE(live.wait_for_steps(40));
-        live.edit(TakeEdit{"fixed"});
+        live.edit(GrabEdit{"fixed"});
         REQUIRE(live.wait_for_steps(20));
         live.session->move_hand(Vec3(-0.04, 0.02, 0));
         REQUIRE(live.wait_for_steps(40));
         live.edit(UndoEdit{});
-        live.edit(TakeEdit{"nothing of that name"});
+        live.edit(GrabEdit{"nothing of that name"});
         LiveSettings other{read_scene(test::in_project("scenes/water")).coupling, 5};
         other.coupling.mode = CouplingMode::VariableForceConstantDisplacement;
         live.session->send(other);
@@ -218,7 +218,7 @@ TEST_CASE("a session of two hands, and another device, is played again to the bi
         live.session->move_hand(Vec3(0.02, -0.01, 0.01), 1);
         REQUIRE(live.wait_for_steps(100));
         CHECK(live.frame.hands.size() == 2);
-        live.edit(LetGoEdit{}, 1);
+        live.edit(ReleaseEdit{}, 1);
         REQUIRE(live.wait_for_steps(20));
         live.edit(UndoEdit{}, 1);
         MouseHandleSettings settings = mouse_handle_of(hand_model(HandGrip::Firm));
@@ -246,8 +246,8 @@ TEST_CASE("measured times that steer a choice are part of the journal", "[app][t
         live.session->begin_recording(recording);
         live.session->move_hand(Vec3(0.02, 0.01, 0));
         REQUIRE(live.wait_for_steps(60));
-        live.edit(LetGoEdit{});
-        live.edit(TakeEdit{"resting:3"});
+        live.edit(ReleaseEdit{});
+        live.edit(GrabEdit{"resting:3"});
         REQUIRE(live.wait_for_steps(40));
         live.session->end_recording();
     }
@@ -305,14 +305,14 @@ TEST_CASE("edits that take longer than a step are played again to the bit",
         live.session->begin_recording(recording);
         REQUIRE(live.wait_for_steps(5));
         live.session->move_hand(Vec3(0.005, 0, 0));
-        live.edit(TakeEdit{"protease_a:25"});
-        live.edit(LetGoEdit{}, 1);  // waits for the one before
+        live.edit(GrabEdit{"protease_a:25"});
+        live.edit(ReleaseEdit{}, 1);  // waits for the one before
         live.edit(PinEdit{{"protease_a:25 CA", "protease_a:27 CA"}});
         REQUIRE(live.wait_until([](const LiveFrame& f) {
             return f.hands[0].held_address == "protease_a:25" && f.hands[1].held.count == 0;
         }));
         REQUIRE(live.wait_for_steps(5));
-        live.edit(TakeEdit{"protease_a:2500"});
+        live.edit(GrabEdit{"protease_a:2500"});
         REQUIRE(live.wait_until([](const LiveFrame& f) { return f.readout.refused_edits > 0; }));
         live.edit(UndoEdit{});
         REQUIRE(live.wait_for_steps(5));

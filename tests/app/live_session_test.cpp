@@ -267,7 +267,7 @@ TEST_CASE("a frame has the legend of the colours that it shows", "[app][threads]
 TEST_CASE("another molecule is taken while a force is felt, which glides, and it follows",
           "[app][threads]") {
     test::VirtualClock clock;
-    TakingHand hand({TakeEdit{"fixed"}}, clock);
+    TakingHand hand({GrabEdit{"fixed"}}, clock);
     const LiveFrame frame = run_course(hand, clock);
 
     CHECK(frame.readout.problem.empty());
@@ -282,7 +282,7 @@ TEST_CASE("another molecule is taken while a force is felt, which glides, and it
 
 TEST_CASE("undo in the window gives back what was held, without a jump", "[app][threads]") {
     test::VirtualClock clock;
-    TakingHand hand({TakeEdit{"fixed"}, UndoEdit{}}, clock);
+    TakingHand hand({GrabEdit{"fixed"}, UndoEdit{}}, clock);
     const LiveFrame frame = run_course(hand, clock);
 
     CHECK(frame.readout.problem.empty());
@@ -296,7 +296,7 @@ TEST_CASE("undo in the window gives back what was held, without a jump", "[app][
 
 TEST_CASE("a hand that lets go feels nothing and moves nothing", "[app][threads]") {
     test::VirtualClock clock;
-    TakingHand hand({LetGoEdit{}}, clock);
+    TakingHand hand({ReleaseEdit{}}, clock);
     const LiveFrame frame = run_course(hand, clock);
 
     CHECK(frame.readout.problem.empty());
@@ -309,7 +309,7 @@ TEST_CASE("a hand that lets go feels nothing and moves nothing", "[app][threads]
 
 TEST_CASE("an edit that cannot be made says why and changes nothing", "[app][threads]") {
     test::VirtualClock clock;
-    TakingHand hand({TakeEdit{"third"}}, clock);
+    TakingHand hand({GrabEdit{"third"}}, clock);
     const LiveFrame frame = run_course(hand, clock);
 
     CHECK(frame.readout.problem ==
@@ -328,7 +328,7 @@ TEST_CASE("a reset forgets edits, and another start is never one of before", "[a
     const auto start = [&] { return live.frame.readout.contact.grip_number; };
     std::uint32_t last = start();
     for (const char* const name : {"fixed", "moved", "fixed"}) {
-        send(TakeEdit{name});
+        send(GrabEdit{name});
         REQUIRE(live.wait_until([&](const LiveFrame&) { return start() != last; }));
         CHECK(start() > last);
         last = start();

@@ -86,11 +86,11 @@ private:
         const std::string name = below(2) == 0 ? "fixed" : "moved";
         switch (below(7)) {
             case 0:
-                return TakeEdit{name};
+                return GrabEdit{name};
             case 1:
-                return TakeEdit{name + ":1 OH2"};
+                return GrabEdit{name + ":1 OH2"};
             case 2:
-                return LetGoEdit{};
+                return ReleaseEdit{};
             case 3:
                 return RemoveEdit{name};
             case 4:

@@ -6,9 +6,9 @@
 #include "devices/mouse_handle.h"
 #include "devices/played_handle.h"
 #include "haptics/safety.h"
+#include "loading/load.h"
 #include "session/run_headless.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "tests/app/virtual_clock.h"
 #include "tests/support/water_scene.h"
 

@@ -1,8 +1,8 @@
 #include "app/recovery.h"
 
+#include "loading/load.h"
 #include "platform/program.h"
 #include "scene/read_scene.h"
-#include "simulation/load.h"
 #include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 

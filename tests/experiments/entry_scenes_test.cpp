@@ -1,9 +1,9 @@
 // The scenes that palpa prepare made of entries run, and what their hands hold can be felt.
 #include "devices/emulated_omni.h"
 #include "experiments/emulated_hand.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
-#include "simulation/load.h"
 #include "simulation/resources.h"
 #include "tests/support/paths.h"
 

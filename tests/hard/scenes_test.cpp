@@ -4,10 +4,10 @@
 #include "devices/emulated_omni.h"
 #include "formats/crd.h"
 #include "formats/structure.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/probe.h"
 #include "simulation/solver.h"
@@ -319,7 +319,7 @@ TEST_CASE("a hand thrown out of the world and back", "[hard]") {
             CHECK(find_largest_move(world.resource<AtomTable>().positions, before) <=
                   (way.is_renewed ? 1e-9 : 0));
         // And on from there.
-        take_hold(world, hand_at(world, 0), {});
+        begin_grip(world, hand_at(world, 0), {});
         CHECK(step_world(world, {}, felt).finite);
         CHECK(test::is_finite(world.resource<TorsionState>()));
     }

@@ -182,8 +182,8 @@ TEST_CASE("atoms that are let go are sent zeros once", "[imd][client]") {
     CHECK(session.client->pull(std::vector<std::int32_t>{1}, std::vector<Vec3>{Vec3(7, 0, 0)}) ==
           "");
     session.expect(test::client_forces(native, {1, 0}, {7, 0, 0, 0, 0, 0}));
-    session.client->let_go();
-    session.client->let_go();
+    session.client->release_atoms();
+    session.client->release_atoms();
     session.client->set_rate(3);
     session.expect(test::client_forces(native, {1}, {0, 0, 0}) + hex("00000008 00000003"));
 }

@@ -1,10 +1,10 @@
 // The law that closed paths are held against.
 #include "tools/lab/experiments/continuous_law.h"
 #include "core/units.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "tests/support/paths.h"
 

@@ -69,7 +69,7 @@ TEST_CASE("a time is disturbed from a fault or an edit until it is felt no more"
           "[experiments][disturbances]") {
     Disturbances disturbances;
     disturbances.faults = {{DeviceFault::Jump, 1000, 1010}};
-    disturbances.edits = {{5.0, 0, LetGoEdit{}, {"test"}}};
+    disturbances.edits = {{5.0, 0, ReleaseEdit{}, {"test"}}};
     const auto is = [&](double time_s) { return is_disturbed(disturbances, time_s, 0.1); };
 
     CHECK_FALSE(is(0.999));

@@ -68,10 +68,10 @@ std::filesystem::path in_scene(const std::string& file) {
 
 // Every action, with all of its keys and with as few as will do.
 const std::vector<Form> forms{
-    {R"(take = "moved")", TakeEdit{"moved"}},
-    {R"(take = "moved:25")", TakeEdit{"moved:25"}},
-    {R"(take = "moved:-27A CA")", TakeEdit{"moved:-27A CA"}},
-    {"let_go = true", LetGoEdit{}},
+    {R"(take = "moved")", GrabEdit{"moved"}},
+    {R"(take = "moved:25")", GrabEdit{"moved:25"}},
+    {R"(take = "moved:-27A CA")", GrabEdit{"moved:-27A CA"}},
+    {"let_go = true", ReleaseEdit{}},
     {"put_back = true", PutBackEdit{}},
     {R"(add = { residue = "TIP3", name = "w2", at_angstrom = [1, -2.5, 0] })",
      AddEdit{"TIP3", "", "w2", {1, -2.5, 0}}},
@@ -174,7 +174,7 @@ measured_from = "fixed"
     REQUIRE(scene.edits.size() == 3);
     CHECK(scene.edits[0].at_s == 3);
     CHECK(scene.edits[0].hand == 1);
-    CHECK(scene.edits[0].action == EditAction{TakeEdit{"moved"}});
+    CHECK(scene.edits[0].action == EditAction{GrabEdit{"moved"}});
     CHECK(scene.edits[0].place.file == edited_file);
     CHECK(scene.edits[0].place.line == 16);
     CHECK(scene.edits[1].at_s == 1.5);
@@ -401,7 +401,7 @@ TEST_CASE("a setting that no coupling has is refused with those that it has",
 }
 
 TEST_CASE("the files of an edit are those that it names", "[scene][edits]") {
-    EditAction none = TakeEdit{"a"}, residue = AddEdit{"TIP3", "", "w", {}},
+    EditAction none = GrabEdit{"a"}, residue = AddEdit{"TIP3", "", "w", {}},
                one = AddEdit{"", "", "w", {}, "a.crd"},
                both = AddEdit{"", "", "w", {}, "a.crd", "b.psf", "A"};
 

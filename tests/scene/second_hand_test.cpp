@@ -307,6 +307,14 @@ grab = { molecule = "", measured_from = "fixed" }
     CHECK(one.hands[0].grip == HandGrip::Firm);
     CHECK(one.device.friction_N == 0.125);
     CHECK(one.place_of("hand.grip").line == 13);
+
+    const SceneDescription table = parse_scene(
+        before.substr(0, before.find("[molecules.other]")) +
+            "[hand]\ngrip = \"firm\"\n[hand.grab]\nmolecule = \"moved\"\nmeasured_from = "
+            "\"fixed\"\n[hand.device]\nfriction_N = 0.125\n",
+        two_hands_file);
+    CHECK(table.hands == one.hands);
+    CHECK(table.device == one.device);
 }
 
 TEST_CASE("what must be felt is no hand's own unless its table has it", "[scene][second]") {
@@ -341,6 +349,17 @@ TEST_CASE("settings without a number are those of the first hand", "[scene][seco
     CHECK(one.hands[0].grip == HandGrip::Firm);
     CHECK(one.place_of("hand.grip").file == "--set hand[1].grip=firm");
 
+    // The coupling of hand[1] is its own also if the setting that adds hand[2] comes later.
+    const SceneDescription added = read_scene(
+        test::in_project("scenes/water/space.toml"),
+        std::vector<std::string>{"hand.grab.measured_from=fixed", "hand[1].coupling.mode=3",
+                                 "hand[2].grab.molecule=\"\"", "hand[2].grab.measured_from=fixed",
+                                 "hand[2].stroke=hold"});
+    REQUIRE(added.hands.size() == 2);
+    CHECK(coupling_of(added, 0).mode == CouplingMode::ConstantForceVariableDisplacement);
+    CHECK(coupling_of(added, 1) == added.coupling);
+    CHECK(added.coupling.mode != coupling_of(added, 0).mode);
+
     const auto error_of = [](const std::string& setting) {
         return test::load_error_of([&] { (void)read_two("", {setting}); });
     };
@@ -364,6 +383,9 @@ TEST_CASE("lists of hands that cannot be are refused", "[scene][second][errors]"
     CHECK_THAT(two_hands_error(before +
                                "[grab]\nmolecule = \"moved\"\nmeasured_from = \"fixed\"\n" + hand),
                Contains("unknown key 'grab'"));
+    CHECK_THAT(two_hands_error(before + "[grab]\nmolecule = \"moved\"\n[hand]\ngrab = {molecule = "
+                                        "\"other\"}\n"),
+               Contains("unknown key 'hand.grab'"));
     CHECK_THAT(two_hands_error("hand = 3\n" + two_hands),
                Contains("'hand' is 3; expected a table, [hand]"));
     CHECK_THAT(two_hands_error("hand = [3, 4]\n" + before),

@@ -92,7 +92,7 @@ TEST_CASE("where nothing moves by itself the servo's guess is what is looked at"
         log.add(tick);
         ContactModel answer;
         answer.force_newton = Vec3(1e-9, (i % 100 == 0 ? 0.1e-12 : 1e-9) * i, 0);
-        log.add_answer(answer);
+        log.add_model(answer);
     }
 
     const AccuracyReport report = log.report(0).value_or(AccuracyReport{});

@@ -1,7 +1,7 @@
 // Guarded coupling with a molecule that moves in space, knocked and pushed from every side.
 #include "haptics/device.h"
+#include "loading/load.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/step.h"
 #include "tests/support/guarded_loop.h"
 

@@ -1,8 +1,8 @@
 // What guarded coupling must keep to on the dimer: six hands, four periods, with the device's
 // friction and without. Each limit and its number come from a study of this loop in another
 // program.
+#include "loading/load.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/step.h"
 #include "tests/support/guarded_loop.h"
 #include "tests/support/water_run.h"

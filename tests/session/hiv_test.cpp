@@ -1,11 +1,11 @@
 // The strokes of scenes/hiv, felt from the first tick to the last.
 #include "devices/emulated_omni.h"
 #include "haptics/servo.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "session/lockstep.h"
 #include "session/run_headless.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/step.h"
 #include "tests/support/emulated_hand.h"
 #include "tests/support/paths.h"

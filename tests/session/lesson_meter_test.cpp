@@ -3,11 +3,11 @@
 
 #include "core/load_error.h"
 #include "devices/emulated_omni.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "session/lockstep.h"
 #include "session/run_headless.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/step.h"
 #include "tests/support/paths.h"
 #include "tests/support/water_run.h"

@@ -2,10 +2,10 @@
 #include "session/lesson.h"
 
 #include "devices/emulated_omni.h"
+#include "loading/load.h"
 #include "session/lockstep.h"
 #include "session/run_headless.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/step.h"
 #include "tests/support/water_run.h"
 

@@ -69,9 +69,9 @@ TEST_CASE("while a long edit is made the world stands still, and nothing of it i
     const std::vector<Vec3> before = live.positions();
     World expected = live.world();
     UndoHistory history;
-    history.apply(expected, edit_now(TakeEdit{"protease_a:25"}));
+    history.apply(expected, edit_now(GrabEdit{"protease_a:25"}));
 
-    live.begin(TakeEdit{"protease_a:25"});
+    live.begin(GrabEdit{"protease_a:25"});
     CHECK(live.simulation.readout().edit_under_way == "take");
     // By a thread of its own, or in the end by the one that adopts it.
     const bool has_thread = GENERATE(true, false);
@@ -111,7 +111,7 @@ TEST_CASE("a coupling edit is undone in a live session, and begins from the wind
     CHECK(coupling().mode == CouplingMode::Guarded);
     CHECK(coupling().A_d == 3e7);
     // Undoing another edit leaves it.
-    live.play(CommandEvent{edit_now(TakeEdit{"fixed"})});
+    live.play(CommandEvent{edit_now(GrabEdit{"fixed"})});
     live.play(CommandEvent{edit_now(UndoEdit{})});
     CHECK(coupling().A_d == 3e7);
 }
@@ -298,7 +298,7 @@ TEST_CASE("at its limit the history says what it forgets", "[session][undo]") {
 
 TEST_CASE("a long edit that is refused says so and changes nothing", "[session][edits]") {
     Live live(hiv);
-    live.begin(TakeEdit{"protease_a:2500"});
+    live.begin(GrabEdit{"protease_a:2500"});
     live.step(1e-4);
     const std::vector<Vec3> before = live.positions();
     live.play(AdoptEvent{});
@@ -347,12 +347,12 @@ TEST_CASE("a scene that is loaded anew has a lesson that has measured nothing ye
 
 TEST_CASE("only what needs new mechanics of many atoms takes long", "[session][edits]") {
     const Live live(hiv), small("scenes/water"), rigid("scenes/hiv");
-    CHECK(rigid.simulation.takes_long(edit_now(TakeEdit{"protease_a:25"})));
-    CHECK_FALSE(rigid.simulation.takes_long(edit_now(TakeEdit{"protease_a"})));
-    CHECK(live.simulation.takes_long(edit_now(LetGoEdit{})));
+    CHECK(rigid.simulation.takes_long(edit_now(GrabEdit{"protease_a:25"})));
+    CHECK_FALSE(rigid.simulation.takes_long(edit_now(GrabEdit{"protease_a"})));
+    CHECK(live.simulation.takes_long(edit_now(ReleaseEdit{})));
     CHECK_FALSE(live.simulation.takes_long(edit_now(UndoEdit{})));
     CHECK_FALSE(live.simulation.takes_long(edit_now(PinEdit{{"protease_a:25 CA"}})));
-    CHECK_FALSE(small.simulation.takes_long(edit_now(TakeEdit{"fixed"})));
+    CHECK_FALSE(small.simulation.takes_long(edit_now(GrabEdit{"fixed"})));
 }
 
 TEST_CASE("what the scene adds to the picture stays when settings are undone", "[session][undo]") {

@@ -1,6 +1,6 @@
 #include "session/plan_hand.h"
 
-#include "simulation/load.h"
+#include "loading/load.h"
 #include "simulation/probe.h"
 #include "tests/support/water_run.h"
 

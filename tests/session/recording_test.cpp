@@ -3,7 +3,7 @@
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
-#include "simulation/load.h"
+#include "loading/load.h"
 #include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/water_run.h"

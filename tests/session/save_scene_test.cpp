@@ -2,10 +2,10 @@
 
 #include "core/files.h"
 #include "core/text.h"
+#include "loading/edit.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
-#include "simulation/edit.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
@@ -169,10 +169,10 @@ TEST_CASE("a saved scene has what edits have made", "[save]") {
     world = edited(world, RestraintEdit{{"copy:1 OH2", "fixed:1"}, std::nullopt, 3, 2});
     world = edited(world, RestraintEdit{{"copy:1 H1"}, std::array{0.1, 9.0, 1.0}, 5, 0});
     check_saved(world);
-    world = edited(world, TakeEdit{"copy:1 H2"});
+    world = edited(world, GrabEdit{"copy:1 H2"});
     pull(world, {{0.1, 0.1, 0}, {0.1, 0.1, 0}});
     check_saved(world);
-    world = edited(world, TakeEdit{"copy"});
+    world = edited(world, GrabEdit{"copy"});
     check_saved(world);
     world = edited(world, RemoveEdit{"moved"});
     check_saved(world);
@@ -182,23 +182,23 @@ TEST_CASE("a saved scene has what edits have made", "[save]") {
 
 TEST_CASE("a saved scene has the hands of the world, full and empty", "[save]") {
     const World along_x = load("water");
-    check_saved(edited(along_x, LetGoEdit{}));
+    check_saved(edited(along_x, ReleaseEdit{}));
     check_saved(edited(along_x, RemoveEdit{"fixed"}));
     World behind = along_x;
     pull(behind, {{-12, 0, 0}});
     check_saved(behind);
-    const World space = edited(load("water/space.toml"), LetGoEdit{});
+    const World space = edited(load("water/space.toml"), ReleaseEdit{});
     check_saved(space);
-    check_saved(edited(space, TakeEdit{"fixed"}));
+    check_saved(edited(space, GrabEdit{"fixed"}));
 
     const World two = load("water/two-hands.toml");
-    check_saved(edited(two, LetGoEdit{}, 1));
-    const World on_one = edited(two, TakeEdit{"left:1 H1"}, 1);
+    check_saved(edited(two, ReleaseEdit{}, 1));
+    const World on_one = edited(two, GrabEdit{"left:1 H1"}, 1);
     check_saved(on_one);
-    check_saved(edited(on_one, LetGoEdit{}));
+    check_saved(edited(on_one, ReleaseEdit{}));
     const World on_line = load("water", {"second.grab.molecule=\"\"", "second.hand.stroke=hold",
                                          "second.grab.measured_from=\"\""});
-    check_saved(edited(on_line, TakeEdit{"fixed"}, 1));
+    check_saved(edited(on_line, GrabEdit{"fixed"}, 1));
 }
 
 TEST_CASE("a saved scene forgets views and lessons of molecules that are gone", "[save]") {
@@ -222,7 +222,7 @@ TEST_CASE("a saved scene forgets views and lessons of molecules that are gone", 
 
 TEST_CASE("a saved scene keeps the edits of its file that are still to come", "[save]") {
     SceneDescription scene = read_scene(test::in_project("scenes/water"));
-    scene.edits = {{0, 0, PinEdit{{"fixed:1 OH2"}}, {}}, {0.01, 0, LetGoEdit{}, {}}};
+    scene.edits = {{0, 0, PinEdit{{"fixed:1 OH2"}}, {}}, {0.01, 0, ReleaseEdit{}, {}}};
     World world = load_world(scene);
     CHECK(describe_world(world, "saved.toml").scene.edits.size() == 2);
     pull(world, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}});

@@ -2,9 +2,9 @@
 #include "session/scripted_run.h"
 
 #include "devices/emulated_omni.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "session/recording.h"
-#include "simulation/load.h"
 #include "tests/support/emulated_hand.h"
 #include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"

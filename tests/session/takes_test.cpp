@@ -3,11 +3,10 @@
 #include "core/units.h"
 #include "devices/emulated_omni.h"
 #include "field/pair_field.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
-#include "simulation/molecules.h"
 #include "simulation/resources.h"
 #include "tests/support/emulated_hand.h"
 #include "tests/support/paths.h"
@@ -199,7 +198,7 @@ std::vector<EditDescription> take_all(std::vector<std::string> addresses, std::s
     };
     std::size_t taken = 0;
     for (const std::string& address : addresses) {
-        add(TakeEdit{address}, taken % hands);
+        add(GrabEdit{address}, taken % hands);
         if (++taken % 3 != 0) continue;
         add(UndoEdit{}, 0);
         add(RedoEdit{}, 0);
@@ -234,7 +233,7 @@ TEST_CASE("what is taken under a force of newtons is felt gliding, and let go wi
     }
     for (const char* const what : {"fixed", "moved:1", "fixed:1 H1"}) {
         INFO(what);
-        const TakesRun taken = run_takes(scene, {at(strongest_s, TakeEdit{what})});
+        const TakesRun taken = run_takes(scene, {at(strongest_s, GrabEdit{what})});
         check_takes(taken);
         REQUIRE(taken.changes.size() == 1);
         const NewHold& change = taken.changes.front();
@@ -244,7 +243,7 @@ TEST_CASE("what is taken under a force of newtons is felt gliding, and let go wi
         // At the other molecule it is the other force.
         if (what == std::string("fixed")) CHECK(change.law.x() * change.sent_before.x() < 0);
     }
-    const TakesRun let_go = run_takes(scene, {at(strongest_s, LetGoEdit{})});
+    const TakesRun let_go = run_takes(scene, {at(strongest_s, ReleaseEdit{})});
     check_takes(let_go);
     REQUIRE(let_go.changes.size() == 1);
     CHECK(let_go.changes.front().sent_before.norm() > 1);

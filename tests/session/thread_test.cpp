@@ -2,8 +2,8 @@
 // lockstep, with the exchange as their only meeting point.
 #include "devices/emulated_omni.h"
 #include "haptics/servo.h"
+#include "loading/load.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/step.h"
 #include "tests/support/water_run.h"
 

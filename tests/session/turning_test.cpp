@@ -1,10 +1,10 @@
 // A handle that turns the molecule as well as moving it.
 #include "core/units.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "session/lockstep.h"
 #include "session/run_headless.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/step.h"
 #include "tests/support/paths.h"

@@ -1,8 +1,8 @@
 #include "session/unbinding_path.h"
 
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "tests/support/paths.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #include "core/load_error.h"
 #include "core/units.h"
 #include "haptics/gains.h"
-#include "simulation/load.h"
+#include "loading/load.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
 #include "tests/support/water_run.h"

@@ -1,10 +1,10 @@
 #include "statics/accuracy_controller.h"
 
 #include "core/units.h"
+#include "loading/edit.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
-#include "simulation/edit.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/solver.h"
 #include "simulation/step.h"
@@ -201,7 +201,7 @@ TEST_CASE("an error estimate is the difference from complete relaxation",
             scene_of_peptides({"statics.active=0", "hand.start_offset_angstrom=[-6, 0, 0]"}));
         // Within the molecule, so that it does not pull at the whole.
         RestraintEdit{{"held:1", "held:4"}, {}, 30, 3}.apply(few, 0);
-        if (is_by_spring) TakeEdit{"held:2"}.apply(few, 0);
+        if (is_by_spring) GrabEdit{"held:2"}.apply(few, 0);
         move_held(few, (0.05 + 0.03 * i) * Vec3::Unit(i % 3));
         (void)relax_mobile(few, {}).value();
         const Vec3 felt = find_force_on_held(few, hand_at(few, 0));

@@ -1,9 +1,9 @@
 // Steps of a large rigid molecule have its pairs in single precision: against the same in double.
 #include "core/units.h"
+#include "loading/edit.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
-#include "simulation/edit.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/step.h"
 #include "tests/support/held_scene.h"
@@ -137,7 +137,7 @@ TEST_CASE("two hands with rigid molecules in them have fast pairs, before and af
         check_against_double(world, hand);
     }
 
-    LetGoEdit{}.apply(world, 1);
+    ReleaseEdit{}.apply(world, 1);
     RemoveEdit{.molecule = "protease_b"}.apply(world, 0);
     REQUIRE(has_fast_pairs(world, hands[0]));
     check_against_double(world, hands[0]);

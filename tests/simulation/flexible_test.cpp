@@ -6,10 +6,10 @@
 #include "formats/crd.h"
 #include "formats/psf.h"
 #include "formats/structure.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "simulation/components.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
@@ -515,7 +515,7 @@ TEST_CASE("a hand that is nowhere changes nothing", "[simulation][flexible]") {
     CHECK(held_place(world, hand_at(world, 0)) == held);
     CHECK(place_of(world) == place);
     // And it can go on.
-    take_hold(world, hand_at(world, 0), hand_at({0, 0, 0}));
+    begin_grip(world, hand_at(world, 0), hand_at({0, 0, 0}));
     CHECK(step_world(world, hand_at({0.1, 0, 0}), felt).finite);
 }
 

@@ -4,11 +4,10 @@
 #include "simulation/solver.h"
 
 #include "core/units.h"
+#include "loading/edit.h"
+#include "loading/load.h"
 #include "simulation/client_pull.h"
-#include "simulation/edit.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
-#include "simulation/molecules.h"
 #include "simulation/step.h"
 #include "tests/support/pull_molecule.h"
 #include "tests/support/water_scene.h"
@@ -112,7 +111,7 @@ TEST_CASE("a force of a client stays what it is however far its atom goes", "[cl
 TEST_CASE("a hand on a spring feels what a client pulls with", "[clients]") {
     World world = water_to_be_pulled("quasi-static");
     restrain(world, 0.001);
-    TakeEdit{"free:1"}.apply(world, 0);
+    GrabEdit{"free:1"}.apply(world, 0);
     step_on(world, 100);
     const Vec3 end = held_place(world, hand_at(world, 0));
     world.set_resource(pull_at(world, "free", {0, 3, 0}));
@@ -170,7 +169,7 @@ TEST_CASE("undo and edits find the springs of hands and restraints in their plac
     step_on(world, 100);
     const Vec3 pulled = centre_of_water(world, "free");
     UndoHistory history;
-    history.apply(world, {0, 0, TakeEdit{"free:1"}, {"test", 1, 0}});
+    history.apply(world, {0, 0, GrabEdit{"free:1"}, {"test", 1, 0}});
     REQUIRE(spring_of(world, hand_at(world, 0)));
     step_on(world, 50);
     CHECK(world.resource<TorsionState>().springs.size() == 2 + 3);

@@ -4,12 +4,11 @@
 
 #include "assembly/bodies.h"
 #include "assembly/joints.h"
+#include "loading/edit.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
-#include "simulation/edit.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/mechanics.h"
-#include "simulation/molecules.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
 #include "simulation/step.h"
@@ -365,7 +364,7 @@ TEST_CASE("a region goes with the hand, stays when it lets go, and comes back wh
     };
     const std::vector<std::uint32_t> first = model_atoms_of(world).in_table;
     const std::string start = world_bytes(world);
-    edit(LetGoEdit{});
+    edit(ReleaseEdit{});
     CHECK(model_atoms_of(world).in_table == first);
     CHECK(model_of(world).coordinates > 0);
     std::vector<Vec3> before = positions_of(world);
@@ -373,7 +372,7 @@ TEST_CASE("a region goes with the hand, stays when it lets go, and comes back wh
     for (const std::uint32_t atom : moved_atoms(before, positions_of(world)))
         REQUIRE(model_atoms_of(world).in_model(atom));
 
-    edit(TakeEdit{"protease_a:16"});
+    edit(GrabEdit{"protease_a:16"});
     const std::vector<std::uint32_t> second = model_atoms_of(world).in_table;
     CHECK(second != first);
     before = positions_of(world);

@@ -2,9 +2,9 @@
 #include "simulation/relaxed_contact.h"
 
 #include "core/units.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/resources.h"
 #include "simulation/step.h"
 #include "simulation/systems/publish_contact.h"

@@ -2,10 +2,10 @@
 // tests/tools/connect_test.py's.
 #include "simulation/remote_engine.h"
 
+#include "loading/edit.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
-#include "simulation/edit.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
 #include "tests/support/load_error_of.h"
@@ -96,11 +96,11 @@ TEST_CASE("a remote engine's atoms are taken by springs, and nothing else is cha
     World world = load(folder.path(), scene_text(""));
     const Entity hand = hand_at(world, 0);
 
-    TakeEdit{"ion"}.apply(world, 0);
+    GrabEdit{"ion"}.apply(world, 0);
     CHECK(world.find<EngineHold>(hand)->atoms == std::vector<std::uint32_t>{6});
-    TakeEdit{"water:2 OW"}.apply(world, 0);
+    GrabEdit{"water:2 OW"}.apply(world, 0);
     CHECK(world.find<EngineHold>(hand)->atoms == std::vector<std::uint32_t>{3});
-    LetGoEdit{}.apply(world, 0);
+    ReleaseEdit{}.apply(world, 0);
     CHECK_FALSE(world.find<EngineHold>(hand));
     EditDescription remove;
     remove.action = RemoveEdit{"ion"};

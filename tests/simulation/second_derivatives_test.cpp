@@ -1,8 +1,8 @@
 // Second derivatives of TL-3 in HIV-1 protease as the flexible scene has them.
 #include "statics/fast_second_derivatives.h"
 
+#include "loading/load.h"
 #include "scene/read_scene.h"
-#include "simulation/load.h"
 #include "simulation/resources.h"
 #include "statics/relax_joints.h"
 #include "tests/support/paths.h"

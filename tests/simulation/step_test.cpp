@@ -2,7 +2,7 @@
 #include "simulation/systems/publish_contact.h"
 
 #include "core/units.h"
-#include "simulation/load.h"
+#include "loading/load.h"
 #include "simulation/probe.h"
 #include "tests/support/step_once.h"
 #include "tests/support/water_scene.h"

@@ -1,11 +1,10 @@
 // Two hands in one world, against worlds in which one hand put the same molecules there.
 #include "core/units.h"
+#include "loading/edit.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
-#include "simulation/edit.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/mechanics.h"
-#include "simulation/molecules.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"

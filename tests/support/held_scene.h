@@ -1,12 +1,11 @@
 // Scenes with the molecule in the hand first, in the middle or last: nothing may depend on that.
 #pragma once
 #include "ecs/world.h"
+#include "loading/load.h"
 #include "scene/description.h"
 #include "scene/read_scene.h"
 #include "simulation/components.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
-#include "simulation/molecules.h"
 #include "simulation/resources.h"
 #include "tests/support/paths.h"
 #include "tests/support/water_scene.h"

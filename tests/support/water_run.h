@@ -1,9 +1,9 @@
 // A headless run of a scene, or of water with settings, as `palpa run` does it.
 #pragma once
 #include "devices/emulated_omni.h"
+#include "loading/load.h"
 #include "session/plan_hand.h"
 #include "session/run_headless.h"
-#include "simulation/load.h"
 #include "tests/support/emulated_hand.h"
 #include "tests/support/water_scene.h"
 

@@ -102,6 +102,28 @@ class FourHands(unittest.TestCase):
         self.assertEqual(palpa("help", "hand[2].grab.atom").stdout, palpa("help", "grab.atom").stdout)
         self.assertTrue(palpa("help", "hand[3].stroke").stdout.startswith("hand.stroke\n"))
         self.assertTrue(palpa("help", "hand").stdout.startswith("hand[N].KEY\n"))
+        for asked, listed in (("hand[2].grab", "grab"), ("hand.coupling.mode", "coupling.mode"), ("hand[2]", "hand"),
+                              ("second.grab.atom", "grab.atom"), ("second.hand.grip", "hand.grip")):
+            self.assertEqual(palpa("help", asked).stdout, palpa("help", listed).stdout, asked)
+            self.assertTrue(palpa("help", asked).stdout, asked)
+
+    def test_the_text_summary_has_a_block_for_each_hand(self):
+        self.assertIn("hand 1: mode 4, medium hand", self.output)
+        for hand, grip in ((2, "medium"), (3, "medium"), (4, "firm")):
+            block = self.output.split(f"  hand {hand}      mode 4, {grip} hand, friction ")[1].split("  hand ")[0]
+            self.assertIn(f"felt        at most {self.summary[f'hand_{hand}']['largest_felt_N']:.3f} N", block)
+
+    def test_a_hand_grabs_with_its_own_spring(self):
+        stiffness = []
+        for k in (10, 20):
+            folder = Path(self.temporary.name) / f"spring-{k}"
+            result = subprocess.run([PROGRAM, "run", str(SCENE), "--headless", "--commands", "--record", str(folder), "--set",
+                                     f"hand[3].grab.spring_kcal_per_mol_angstrom2={k}"],
+                                    input='take = "west:1 OH2", hand = "third"\nstep 5\n', capture_output=True, text=True)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            with open(folder / "trace.csv") as file:
+                stiffness.append(float(list(csv.DictReader(file))[-1]["stiffness_N_per_m_3"]))
+        self.assertAlmostEqual(stiffness[1] / stiffness[0], 2, delta=0.01)
 
     def test_what_is_wrong_names_the_hand(self):
         for setting, message in [("hand[4].stroke=in", "'hand[4].stroke' is the text \"in\""),

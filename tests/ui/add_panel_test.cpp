@@ -1,8 +1,8 @@
 // The dialog without a window: a mouse and keys that are only numbers.
 #include "ui/add_panel.h"
 
+#include "loading/load.h"
 #include "scene/read_scene.h"
-#include "simulation/load.h"
 #include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/water_scene.h"

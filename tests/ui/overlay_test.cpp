@@ -1,8 +1,8 @@
 // The overlays without a window: a mouse that is only numbers moves sliders and presses buttons.
 #include "ui/overlay.h"
 
+#include "loading/load.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/step.h"
 #include "tests/support/in_language.h"
 #include "tests/support/skip.h"

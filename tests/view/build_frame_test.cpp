@@ -1,10 +1,10 @@
 #include "view/build_frame.h"
 
+#include "loading/edit.h"
+#include "loading/load.h"
 #include "render/renderer.h"
 #include "scene/read_scene.h"
-#include "simulation/edit.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
@@ -258,7 +258,7 @@ TEST_CASE("a hand that holds nothing has no arrow and no bonds, and all is drawn
     move_grabbed(world, 2.8);
     const Representation representation =
         GENERATE(Representation::BallAndStick, Representation::InHand, Representation::Pocket);
-    LetGoEdit{}.apply(world, 0);
+    ReleaseEdit{}.apply(world, 0);
     const FrameScene frame = build_frame(world, {.representation = representation});
     CHECK(std::ranges::all_of(frame.cones,
                               [](const ConeShape& cone) { return cone.pick < first_sign_pick; }));

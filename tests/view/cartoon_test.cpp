@@ -1,9 +1,9 @@
 #include "view/cartoon.h"
 
 #include "formats/crd.h"
+#include "loading/load.h"
 #include "render/renderer.h"
 #include "scene/read_scene.h"
-#include "simulation/load.h"
 #include "simulation/resources.h"
 #include "tests/support/gpu.h"
 #include "tests/support/held_scene.h"

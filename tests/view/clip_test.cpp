@@ -1,9 +1,9 @@
 #include "view/clip.h"
 
+#include "loading/load.h"
 #include "render/renderer.h"
 #include "scene/read_scene.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "tests/support/gpu.h"
 #include "tests/support/held_scene.h"
 #include "tests/support/paths.h"

@@ -1,7 +1,7 @@
 #include "view/contact_pairs.h"
 
+#include "loading/load.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/resources.h"
 #include "tests/support/held_scene.h"
 #include "tests/support/paths.h"

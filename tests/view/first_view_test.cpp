@@ -1,7 +1,7 @@
 #include "view/first_view.h"
 
+#include "loading/load.h"
 #include "render/renderer.h"
-#include "simulation/load.h"
 #include "simulation/resources.h"
 #include "tests/support/water_scene.h"
 

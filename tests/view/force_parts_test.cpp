@@ -1,8 +1,8 @@
 #include "view/force_parts.h"
 
 #include "core/units.h"
+#include "loading/load.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
 #include "tests/support/held_scene.h"

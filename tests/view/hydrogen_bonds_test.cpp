@@ -1,7 +1,7 @@
 #include "view/hydrogen_bonds.h"
 
+#include "loading/load.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
 #include "tests/support/held_scene.h"

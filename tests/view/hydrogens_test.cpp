@@ -1,6 +1,6 @@
 // Which hydrogens are drawn.
+#include "loading/load.h"
 #include "scene/read_scene.h"
-#include "simulation/load.h"
 #include "simulation/resources.h"
 #include "tests/support/held_scene.h"
 #include "tests/support/paths.h"

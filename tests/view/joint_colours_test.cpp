@@ -1,7 +1,7 @@
 // Colours of how joints answer.
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
 #include "simulation/step.h"

@@ -1,11 +1,11 @@
 // What layers, labels and colours make of a scene.
 #include "core/load_error.h"
 #include "core/text.h"
+#include "loading/edit.h"
+#include "loading/load.h"
 #include "molecule/select.h"
 #include "scene/read_scene.h"
-#include "simulation/edit.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/resources.h"
 #include "simulation/select_in_world.h"
 #include "tests/support/held_scene.h"

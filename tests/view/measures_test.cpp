@@ -1,7 +1,7 @@
 #include "view/measures.h"
 
+#include "loading/load.h"
 #include "scene/read_scene.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
 #include "simulation/select_in_world.h"

@@ -1,9 +1,9 @@
 #include "view/past.h"
 
+#include "loading/edit.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
-#include "simulation/edit.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
 #include "tests/support/held_scene.h"

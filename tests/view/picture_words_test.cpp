@@ -2,9 +2,9 @@
 #include "view/picture_words.h"
 
 #include "core/load_error.h"
+#include "loading/load.h"
 #include "render/renderer.h"
 #include "simulation/components.h"
-#include "simulation/load.h"
 #include "tests/support/skip.h"
 #include "tests/support/water_scene.h"
 #include "view/legend.h"

@@ -1,9 +1,9 @@
 #include "view/selected_atoms.h"
 
 #include "core/load_error.h"
+#include "loading/load.h"
 #include "molecule/select.h"
 #include "scene/read_scene.h"
-#include "simulation/load.h"
 #include "simulation/resources.h"
 #include "tests/support/load_error_of.h"
 #include "tests/support/paths.h"

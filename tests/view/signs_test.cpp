@@ -1,8 +1,8 @@
 #include "view/signs.h"
 
+#include "loading/load.h"
 #include "render/renderer.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/resources.h"
 #include "tests/support/gpu.h"

@@ -14,9 +14,9 @@
 #include "inputs/gromacs.h"
 #include "inputs/lammps.h"
 #include "inputs/water_box.h"
+#include "loading/load.h"
 #include "molecule/match_atoms.h"
 #include "scene/read_scene.h"
-#include "simulation/load.h"
 #include "tools/commands/command.h"
 #include "tools/commands/force_field.h"
 

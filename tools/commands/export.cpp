@@ -3,10 +3,10 @@
 #include "core/load_error.h"
 #include "devices/emulated_omni.h"
 #include "experiments/emulated_hand.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "session/coordinates.h"
 #include "session/run_headless.h"
-#include "simulation/load.h"
 #include "tools/commands/command.h"
 #include "tools/commands/progress.h"
 

@@ -11,18 +11,19 @@
 #include "core/translate.h"
 #include "experiments/emulated_hand.h"
 #include "haptics/hand.h"
+#include "loading/load.h"
 #include "render/picture.h"
 #include "scene/find_scene.h"
 #include "scene/read_scene.h"
 #include "session/recording.h"
 #include "session/save_scene.h"
-#include "simulation/load.h"
 #include "tools/commands/kernels.h"
 #include "tools/commands/print_run.h"
 #include "tools/commands/screens.h"
 #include "view/first_view.h"
 
 #include <fmt/format.h>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -132,7 +133,7 @@ SceneDescription find_played(const SceneDescription& scene, const WindowReport& 
     return played;
 }
 
-// Nothing where the scene has one hand.
+// Opens the device of the second hand; none if the scene has one hand.
 WindowDevice open_second_of(const SceneDescription& scene, const World& world,
                             const RunOptions& options, HandOrders& orders, WindowDevices& devices) {
     if (scene.hands.size() < 2) return {};
@@ -179,6 +180,9 @@ std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
                                      const RunOptions& options) {
     if (!settings.hand) settings.hand = hand_model(HandGrip::Medium);  // a window needs somebody
     if (!options.play) give_to_mouse(settings);
+    if (scene.hands.size() > 2)
+        print_warnings(std::array{std::string(
+            "a window has devices for two hands; the others stand still (--headless moves all)")});
     WindowDevices devices(settings, preferences);
     WindowDevice first, second;
     HandOrders second_orders;

@@ -257,13 +257,31 @@ void print_travel(const std::string& title, const HandTravel& travel) {
 
 }  // namespace
 
+namespace {
+
+std::string describe_hand(const SceneDescription& scene, std::size_t slot) {
+    const HandDescription& hand = scene.hands.at(slot);
+    return fmt::format("mode {}, {} hand, friction {} N, stroke {}",
+                       coupling_mode_names[static_cast<std::size_t>(coupling_of(scene, slot).mode)],
+                       grip_names[static_cast<std::size_t>(hand.grip)],
+                       device_of(scene, slot).friction_N,
+                       stroke_names[static_cast<std::size_t>(hand.stroke)]);
+}
+
+void print_other_hand(const SceneDescription& scene, std::size_t slot, const Summary& s) {
+    fmt::print("  hand {}      {}\n", slot + 1, describe_hand(scene, slot));
+    fmt::print("  felt        at most {:.3f} N; net work {:+.4f} J on the hand\n", s.largest_felt_N,
+               s.net_work_J);
+    if (!scene.engine) fmt::print("  molecule    at the end {:.3f} Å\n", s.last_angstrom);
+    if (s.accuracy) print_accuracy(*s.accuracy);
+    print_travel("travel     ", s.travel);
+}
+
+}  // namespace
+
 void print_summary(const SceneDescription& scene, const Summary& s) {
-    fmt::print("{}: {} s, mode {}, T_s = {} ms, {} hand, friction {} N, stroke {}\n",
-               printable(scene.title), scene.seconds,
-               coupling_mode_names[static_cast<std::size_t>(coupling_of(scene, 0).mode)],
-               scene.period_ms, grip_names[static_cast<std::size_t>(scene.hands.front().grip)],
-               device_of(scene, 0).friction_N,
-               stroke_names[static_cast<std::size_t>(scene.hands.front().stroke)]);
+    fmt::print("{}: {} s, T_s = {} ms, {}{}\n", printable(scene.title), scene.seconds,
+               scene.period_ms, scene.hands.size() > 1 ? "hand 1: " : "", describe_hand(scene, 0));
     if (s.is_on_axis) {
         fmt::print("  felt        at most {:.3f} N of attraction and {:.3f} N of repulsion\n",
                    s.largest_attraction_N, s.largest_repulsion_N);
@@ -282,17 +300,6 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
         fmt::print("\n");
     }
     fmt::print("  net work    {:+.4f} J on the hand\n", s.net_work_J);
-    for (std::size_t i = 0; i < s.other_hands.size(); ++i) {
-        const Summary& other = s.other_hands[i];
-        fmt::print("  hand {}      at most {:.3f} N, net work {:+.4f} J", i + 2,
-                   other.largest_felt_N, other.net_work_J);
-        if (scene.engine) {
-            fmt::print("\n");
-        } else {
-            fmt::print("; {:.3f} Å at the end\n", other.last_angstrom);
-        }
-        print_travel(fmt::format("travel of {}", i + 2), other.travel);
-    }
     // A spring to an engine's atoms is measured from no other molecule.
     if (!scene.engine) {
         fmt::print("  molecule    closest distance {:.3f} Å, at the end {:.3f} Å\n",
@@ -330,6 +337,8 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
     }
     if (s.relaxation) print_relaxation(*s.relaxation);
     print_travel("travel     ", s.travel);
+    for (std::size_t i = 0; i < s.other_hands.size(); ++i)
+        print_other_hand(scene, i + 1, s.other_hands[i]);
     fmt::print("  clipping    {:.1f} % of the time\n", 100 * s.clamped_share);
     fmt::print("  step        {:.2f} µs median, {:.2f} µs p99 of {} steps\n", s.step_median_us,
                s.step_p99_us, s.steps);

@@ -3,11 +3,11 @@
 #include "core/files.h"
 #include "core/text.h"
 #include "formats/crd.h"
+#include "loading/load.h"
 #include "molecule/coincident_atoms.h"
 #include "scene/read_scene.h"
 #include "session/compare_poses.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "tools/commands/command.h"
 #include "tools/commands/progress.h"
 

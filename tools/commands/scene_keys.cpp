@@ -18,13 +18,22 @@ bool is_asked_for(std::string_view key, std::string_view asked) {
     return key.starts_with(std::string(asked) + ".") || key.starts_with(std::string(asked) + "[");
 }
 
-// The key under which one of several hands' is listed: "grab.atom" for "hand[2].grab.atom".
-std::string listed_key(const std::string& asked) {
-    const std::size_t end = asked.find("].");
-    if (!asked.starts_with("hand[") || end == asked.npos) return asked;
-    const std::string rest = asked.substr(end + 2);
-    const bool is_in_table = rest.find('.') != rest.npos;
-    return is_in_table ? rest : "hand." + rest;
+// The key under which a key of one hand is listed: "grab.atom" for "hand[2].grab.atom".
+std::string listed_key(std::string asked) {
+    if (const std::size_t end = asked.find(']'); asked.starts_with("hand[") && end != asked.npos)
+        asked.replace(0, end + 1, "hand");
+    constexpr std::string_view old_second = "second.";
+    if (asked.starts_with("second.hand"))
+        asked.erase(0, old_second.size());
+    else if (asked.starts_with(old_second))
+        asked.replace(0, old_second.size(), "hand.");
+    constexpr std::string_view own = "hand.";
+    for (const std::string_view part : {"grab", "device", "coupling"}) {
+        if (!asked.starts_with(own)) return asked;
+        std::string rest = asked.substr(own.size());
+        if (rest == part || rest.starts_with(std::string(part) + ".")) return rest;
+    }
+    return asked;
 }
 
 std::vector<FieldNote> find_fields(const std::string& asked) {

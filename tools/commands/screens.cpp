@@ -10,10 +10,10 @@
 #include "core/translate.h"
 #include "devices/open_device.h"
 #include "experiments/emulated_hand.h"
+#include "loading/load.h"
 #include "scene/find_scene.h"
 #include "scene/read_scene.h"
 #include "session/recording.h"
-#include "simulation/load.h"
 #include "tools/commands/open_window.h"
 
 #include <fmt/format.h>

@@ -1,9 +1,9 @@
 // palpa select: which atoms of a scene an expression means.
 #include "molecule/select.h"
 #include "core/text.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "simulation/components.h"
-#include "simulation/load.h"
 #include "tools/commands/command.h"
 #include "tools/commands/progress.h"
 #include "view/selected_atoms.h"

@@ -3,8 +3,8 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "core/version.h"
+#include "loading/load.h"
 #include "session/recording.h"
-#include "simulation/load.h"
 #include "tools/commands/choice.h"
 #include "tools/commands/command.h"
 

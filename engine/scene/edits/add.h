@@ -14,8 +14,8 @@ namespace palpa {
 
 class World;
 
-// A new molecule: a residue of the scene's force field, a copy of a molecule, or what is in files,
-// with its reference atom there: of a residue and of files the first one.
+// Adds a molecule with its reference atom at a place: a residue of the scene's force field, a copy
+// of a molecule, or what files have. The reference atom of a residue and of files is the first.
 struct AddEdit {
     static constexpr EditKind kind{.key = "add"};
 

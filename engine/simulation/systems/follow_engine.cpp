@@ -22,7 +22,7 @@ constexpr double farthest_move = 8;  // Å
 constexpr double farthest_place = 1e5;  // Å
 
 // Without a stretch of its spring; the servo puts the hand's end there.
-void hold_anew(World& world, Entity hand, EngineHold& hold) {
+void begin_new_grip(World& world, Entity hand, EngineHold& hold) {
     Grip& grip = *world.write<Grip>(hand);
     hold.smoothed = hold.middle;
     hold.is_live = true;
@@ -40,7 +40,7 @@ void follow_atoms(World& world, const RemoteEngine& engine, Entity hand, bool is
     if (!is_live || middle.cwiseAbs().maxCoeff() > farthest_place) {
         hold.is_live = false;
     } else if (!hold.is_live || has_jumped) {
-        hold_anew(world, hand, hold);
+        begin_new_grip(world, hand, hold);
     } else {
         const double constant_s = 1e-3 * engine.settings.smoothing_ms;
         const double share =
@@ -86,7 +86,7 @@ void send_forces(World& world, RemoteEngine& engine) {
         forces.push_back(next.force);
     }
     engine.refusal.clear();
-    if (atoms.empty()) return engine.client->let_go();
+    if (atoms.empty()) return engine.client->release_atoms();
     engine.refusal = engine.client->pull(atoms, forces);
     if (engine.refusal.empty()) return;
     for (const Entity hand : find_hands(world)) {

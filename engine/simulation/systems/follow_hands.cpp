@@ -11,16 +11,16 @@
 namespace palpa {
 namespace {
 
-// Where what is held goes, and the gain that decided it.
+// The new pose of what is held, and the gain that decided it.
 struct Move {
     MoleculePose to;
     std::optional<double> displacement_gain = {};
 };
 
 Move find_move(const DisplacementLaw& law, const Grip& grip, const Hand& before,
-               const HandPose& pose, const ContactModel& felt, std::uint32_t start) noexcept {
-    // What the servo put elsewhere was held before.
-    if (pose.molecule) return {pose.grip_number == start ? *pose.molecule : grip.pose};
+               const HandPose& pose, const ContactModel& felt, std::uint32_t grip_number) noexcept {
+    // A pose of the servo counts for the grip that it was computed for.
+    if (pose.molecule) return {pose.grip_number == grip_number ? *pose.molecule : grip.pose};
     const double gain = displacement_gain(law, felt.force_newton.norm());
     const Vec3 handle_m = grip.projector * (pose.travel_m - before.travel_m);
     Move move{{grip.pose.place_angstrom + handle_m / gain * units::angstrom_per_metre,
@@ -33,7 +33,8 @@ Move find_move(const DisplacementLaw& law, const Grip& grip, const Hand& before,
     return move;
 }
 
-// Farther out the digits that are left do not tell a shape.
+// Tests whether positions still resolve the shape of a molecule; farther out too few digits are
+// left.
 bool is_within_reach(const MoleculePose& pose) noexcept {
     constexpr double farthest = 1e6;  // Å
     return pose.place_angstrom.norm() < farthest && pose.orientation.coeffs().allFinite();
@@ -74,7 +75,7 @@ void follow_hands(World& world, const StepInput& input) {
     });
 }
 
-void take_hold(World& world, Entity hand, const HandPose& pose) noexcept {
+void begin_grip(World& world, Entity hand, const HandPose& pose) noexcept {
     Hand& held = *world.write<Hand>(hand);
     held.travel_m = pose.travel_m;
     held.turn = pose.turn;

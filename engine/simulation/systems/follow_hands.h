@@ -11,6 +11,6 @@ namespace palpa {
 void follow_hands(World& world, const StepInput& input);
 
 // The hand grips at the present poses: the handle's travel since the last step moves nothing.
-void take_hold(World& world, Entity hand, const HandPose& pose) noexcept;
+void begin_grip(World& world, Entity hand, const HandPose& pose) noexcept;
 
 }  // namespace palpa

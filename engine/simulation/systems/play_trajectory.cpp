@@ -4,7 +4,6 @@
 #include "formats/trajectory.h"
 #include "simulation/components.h"
 #include "simulation/grip_queries.h"
-#include "simulation/molecules.h"
 #include "simulation/playback.h"
 #include "simulation/resources.h"
 #include "simulation/systems/publish_contact.h"

@@ -340,6 +340,16 @@ void update_contact(World& world, Entity hand, const HandPose& pose) {
     last = std::move(contact);
 }
 
+void renew_contact(World& world, Entity hand) {
+    const bool holds = world.find<Grip>(hand);
+    if (holds) update_near(world, hand);
+    LocalContactModel contact =
+        holds ? build_local_contact(world, hand, {}) : build_still_contact(world);
+    LocalContactModel& last = world.write<Contact>(hand)->sent;
+    contact.model.grip_number = last.model.grip_number;
+    last = std::move(contact);
+}
+
 LocalContactModel build_still_contact(const World& world) {
     LocalContactModel contact;
     contact.model.is_still = true;

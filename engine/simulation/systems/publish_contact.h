@@ -16,6 +16,9 @@ void update_contact(World& world, Entity hand, const HandPose& pose);
 // The model at the present positions; without a prediction checked so far.
 LocalContactModel build_local_contact(const World& world, Entity hand, const HandPose& pose);
 
+// Builds the model of a hand again, as of what it holds now; the number of its grip stays.
+void renew_contact(World& world, Entity hand);
+
 // The model of a hand that holds nothing: it feels nothing.
 LocalContactModel build_still_contact(const World& world);
 

@@ -1,8 +1,8 @@
 // A step that fails leaves the world as it was, whatever its systems wrote: this program has the
 // engine's own step.cpp with a system more that writes anything.
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/resources.h"
 #include "simulation/step.h"
 #include "tests/simulation/failing_step/write_anything.h"

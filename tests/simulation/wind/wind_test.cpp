@@ -6,13 +6,12 @@
 #include "core/files.h"
 #include "core/text.h"
 #include "core/units.h"
+#include "loading/edit.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "simulation/client_pull.h"
-#include "simulation/edit.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/mechanics.h"
-#include "simulation/molecules.h"
 #include "simulation/resources.h"
 #include "simulation/step.h"
 #include "simulation/systems/gather_springs.h"
@@ -116,13 +115,13 @@ TEST_CASE("a water on a spring rests where the spring pulls as hard as the wind"
 
 TEST_CASE("in a hand there is no wind", "[wind]") {
     World world = water_in_the_wind();
-    TakeEdit{"free"}.apply(world, 0);
+    GrabEdit{"free"}.apply(world, 0);
     const Vec3 place = held_place(world, hand_at(world, 0));
     step(world, 20);
     CHECK((held_place(world, hand_at(world, 0)) - place).norm() < 1e-12);
     CHECK(contact_at(world, 0).model.force_newton.norm() <
           0.02 * wind * units::newton_per_kcal_per_mol_angstrom);
-    LetGoEdit{}.apply(world, 0);
+    ReleaseEdit{}.apply(world, 0);
     MobilityEdit{"free", Motion::Free, {}}.apply(world, 0);
     step(world, 20);
     CHECK(centre_of(world, "free").x() > place.x() + 0.01);
@@ -167,8 +166,8 @@ TEST_CASE("two winds, a client and two hands pull at once, each with its own for
     add_free(world, "one", {0, 60, 0});
     add_free(world, "other", {0, -60, 0});
     const std::vector<Entity> hands = find_hands(world);
-    TakeEdit{"one:1"}.apply(world, 0);
-    TakeEdit{"other:1"}.apply(world, 1);
+    GrabEdit{"one:1"}.apply(world, 0);
+    GrabEdit{"other:1"}.apply(world, 1);
     const Vec3 start = centre_of(world, "free");
     constexpr double k = 2, gust = 0.7, client = 1.1;
     RestraintEdit{{"free:1"}, {{start.x(), start.y(), start.z()}}, k, 0}.apply(world, 0);

@@ -1,8 +1,8 @@
 #include "tools/lab/bench/adaptive.h"
 
 #include "core/units.h"
+#include "loading/load.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/solver.h"
 #include "tools/lab/bench/stroke.h"
 

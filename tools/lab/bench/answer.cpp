@@ -1,8 +1,8 @@
 #include "tools/lab/bench/answer.h"
 
 #include "haptics/gains.h"
+#include "loading/load.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
 #include "tools/lab/bench/real_time_way.h"

@@ -6,7 +6,7 @@
 #include "field/processor.h"
 #include "forces/force_field.h"
 #include "forces/solvation.h"
-#include "simulation/load.h"
+#include "loading/load.h"
 
 #include <fmt/format.h>
 #include <algorithm>

@@ -6,9 +6,9 @@
 #include "devices/mouse_handle.h"
 #include "experiments/emulated_hand.h"
 #include "experiments/mouse_person.h"
+#include "loading/load.h"
 #include "session/statistics.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/resources.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "tools/lab/bench/real_time_way.h"
 
+#include "loading/load.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/solver.h"
 #include "simulation/step.h"
 #include "statics/renewal_worker.h"

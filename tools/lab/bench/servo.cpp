@@ -2,9 +2,9 @@
 
 #include "core/units.h"
 #include "haptics/servo.h"
+#include "loading/load.h"
 #include "session/run_headless.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 
 #include <fmt/format.h>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "core/load_error.h"
 #include "core/text.h"
+#include "loading/load.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/solver.h"
 #include "tools/lab/bench/adaptive.h"
 #include "tools/lab/bench/cut_sphere.h"

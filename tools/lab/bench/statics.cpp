@@ -1,8 +1,8 @@
 #include "tools/lab/bench/statics.h"
 
 #include "core/load_error.h"
+#include "loading/load.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/probe.h"
 #include "simulation/solver.h"

@@ -3,8 +3,8 @@
 #include "assembly/joints.h"
 #include "core/load_error.h"
 #include "core/units.h"
+#include "loading/load.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/solver.h"
 
 #include <fmt/format.h>
@@ -104,7 +104,7 @@ double find_reach(const SceneDescription& scene) {
     }
     if (farthest == 0) return 3;
     if (leads) return farthest;
-    return farthest * 1e-3 / scene.coupling.A_d * units::angstrom_per_metre;
+    return farthest * 1e-3 / coupling_of(scene, 0).A_d * units::angstrom_per_metre;
 }
 
 double StrokeResult::mean_us() const {

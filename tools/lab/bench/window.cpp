@@ -7,9 +7,9 @@
 #include "experiments/emulated_hand.h"
 #include "experiments/make_scene.h"
 #include "haptics/hand.h"
+#include "loading/load.h"
 #include "scene/find_scene.h"
 #include "scene/read_scene.h"
-#include "simulation/load.h"
 #include "view/first_view.h"
 
 #include <fmt/format.h>

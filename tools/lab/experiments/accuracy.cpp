@@ -5,12 +5,12 @@
 #include "core/units.h"
 #include "devices/emulated_omni.h"
 #include "experiments/emulated_hand.h"
+#include "loading/load.h"
 #include "math/quantile.h"
 #include "scene/read_scene.h"
 #include "session/accuracy_report.h"
 #include "session/run_headless.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "simulation/probe.h"
 #include "simulation/solver.h"
@@ -53,7 +53,7 @@ public:
         scene.statics.renews_beside = false;
         scene.statics.budget_us.reset();
         scene.statics.cutoff_angstrom.reset();
-        scene.coupling.feel_within_pN.reset();
+        coupling_of(scene, 0).feel_within_pN.reset();
         world_ = build_mechanics_world(scene, model_of(world), held_part(world));
     }
 

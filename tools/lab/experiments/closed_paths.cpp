@@ -5,10 +5,10 @@
 #include "core/text.h"
 #include "devices/emulated_omni.h"
 #include "experiments/emulated_hand.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "tools/lab/experiments/continuous_law.h"
 #include "tools/lab/experiments/scenarios.h"
@@ -162,7 +162,7 @@ void check_closed_paths(const ClosedPathOptions& options) {
         }
     }
     const SceneDescription scene = read_scene(options.scene, options.settings);
-    if (scene.coupling.mode != CouplingMode::Guarded) {
+    if (coupling_of(scene, 0).mode != CouplingMode::Guarded) {
         throw LoadError(
             scene.place_of("coupling.mode"),
             "closed-paths compares with guarded coupling; expected coupling.mode = \"guarded\"");

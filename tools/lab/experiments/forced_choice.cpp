@@ -2,12 +2,12 @@
 
 #include "devices/emulated_omni.h"
 #include "haptics/hand.h"
+#include "loading/load.h"
 #include "platform/terminal.h"
 #include "session/lockstep.h"
 #include "session/run_headless.h"
 #include "simulation/coupling.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "simulation/step.h"
 

@@ -4,10 +4,10 @@
 #include "core/units.h"
 #include "devices/emulated_omni.h"
 #include "experiments/emulated_hand.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "tools/lab/experiments/disturbances.h"
 
@@ -184,7 +184,7 @@ ScenarioResult play_scenario(const ScenarioOptions& options, std::size_t number)
     result.judged_share = stretches.share();
     result.most_newton = watched.most_newton();
     result.most_change_newton = watched.most_change_newton();
-    result.clamp_newton = scene.coupling.clamp_N;
+    result.clamp_newton = coupling_of(scene, 0).clamp_N;
     result.faults = disturbances.faults.size();
     result.edits = disturbances.edits.size();
     result.ripple_N = summary.ripple ? summary.ripple->rms : 0;

@@ -5,11 +5,11 @@
 #include "devices/emulated_hand.h"
 #include "devices/emulated_omni.h"
 #include "haptics/hand.h"
+#include "loading/load.h"
 #include "session/lockstep.h"
 #include "session/run_headless.h"
 #include "simulation/coupling.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/step.h"
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ OperatorSettings draw_operator(const OperatorStudyOptions& options, const StudyT
     settings.threshold_newton = person.between(0.05, 0.1);
     settings.approach_m_per_s = person.between(0.03, 0.06);
     settings.has_force = trial.mode != CouplingMode::NoForce;
-    settings.handle_m_per_angstrom = scene.coupling.A_d * units::metre_per_angstrom;
+    settings.handle_m_per_angstrom = coupling_of(scene, 0).A_d * units::metre_per_angstrom;
     // Where contact begins is seen well enough. To find the rest by the picture alone is guessing:
     // this spread is of the size that people had in the paper, and goes no nearer than molecules
     // visibly are in each other.

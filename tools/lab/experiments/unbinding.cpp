@@ -4,10 +4,10 @@
 #include "core/load_error.h"
 #include "devices/emulated_omni.h"
 #include "experiments/emulated_hand.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "tools/lab/experiments/scenarios.h"
 
 #include <fmt/format.h>
@@ -210,7 +210,7 @@ UnbindingResult play_unbinding(const UnbindingOptions& options, std::vector<std:
     result.settings = settings;
     if (watch.is_over() && summary.ripple) result.ripple_N = summary.ripple->rms;
     result.grip = grip_names[static_cast<std::size_t>(scene.hands.front().grip)];
-    result.mode = coupling_mode_names[static_cast<std::size_t>(scene.coupling.mode)];
+    result.mode = coupling_mode_names[static_cast<std::size_t>(coupling_of(scene, 0).mode)];
     result.period_ms = scene.period_ms;
     result.active = scene.statics.active;
     result.is_to_leave = is_to_leave(scene);

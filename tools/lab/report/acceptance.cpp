@@ -1,6 +1,6 @@
 // The limits that guarded coupling is held to on two waters, and what this run measured.
+#include "loading/load.h"
 #include "scene/read_scene.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "tools/lab/experiments/axis_run.h"
 #include "tools/lab/report/criteria.h"

@@ -1,9 +1,9 @@
 // Figures 1, 4, 5 and 6: what two waters do to each other, the gains, and strokes through both.
 #include "core/units.h"
 #include "haptics/gains.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "simulation/coupling.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "tools/lab/experiments/axis_run.h"
 #include "tools/lab/report/sections.h"

@@ -2,9 +2,9 @@
 // and save there.
 #include "devices/emulated_omni.h"
 #include "experiments/emulated_hand.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
-#include "simulation/load.h"
 #include "simulation/mechanics.h"
 #include "tools/lab/bench/stroke.h"
 #include "tools/lab/report/sections.h"

@@ -4,10 +4,10 @@
 #include "core/load_error.h"
 #include "core/machine.h"
 #include "core/version.h"
+#include "loading/load.h"
 #include "scene/find_scene.h"
 #include "scene/read_scene.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "tools/lab/bench/bench.h"
 #include "tools/lab/bench/row.h"
@@ -65,7 +65,7 @@ std::vector<std::pair<std::string, std::string>> list_facts(const ReportOptions&
 Existing check(const ReportOptions& options) {
     check_gnuplot();
     const SceneDescription scene = read_scene(options.scene, options.settings);
-    if (scene.coupling.mode != CouplingMode::Guarded) {
+    if (coupling_of(scene, 0).mode != CouplingMode::Guarded) {
         throw LoadError(scene.place_of("coupling.mode"),
                         "the limits of the report apply to guarded coupling; expected "
                         "coupling.mode = \"guarded\"");

@@ -2,8 +2,8 @@
 // equation 1, by the law of damping, by eigenvalues, and in the emulated loop itself.
 #include "core/units.h"
 #include "haptics/plant.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "tools/lab/experiments/onset.h"
 #include "tools/lab/report/sections.h"

@@ -1,8 +1,8 @@
 // Figures 7 and 8: how well and how soon emulated operators find the place without force.
 #include "experiments/study.h"
 #include "core/units.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
-#include "simulation/load.h"
 #include "simulation/probe.h"
 #include "tools/lab/experiments/study_operators.h"
 #include "tools/lab/report/sections.h"

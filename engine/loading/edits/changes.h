@@ -1,8 +1,8 @@
 // Changes of a world that several edits make.
 #pragma once
 #include "ecs/world.h"
+#include "loading/named_parts.h"
 #include "simulation/components.h"
-#include "simulation/named_parts.h"
 
 #include <cstddef>
 #include <string>
@@ -35,7 +35,7 @@ void free_for_spring(Mobility& mobility);
 void release(World& world, Entity hand);
 
 // Increments the grip number, so that the servo resets its pose from the model.
-void take_hold_anew(World& world, Entity hand);
+void begin_new_grip(World& world, Entity hand);
 
 // Refuses a place where other molecules are: nothing that is not bonded comes as near, and from
 // there forces would tear molecules apart. `remedy`: what would be right.

@@ -1,4 +1,4 @@
-#include "simulation/molecules.h"
+#include "loading/molecules.h"
 
 #include "charmm/assign.h"
 #include "simulation/resources.h"
@@ -50,14 +50,6 @@ void renumber_types(AtomTable& atoms) {
 
 }  // namespace
 
-Entity molecule_called(const World& world, std::string_view name) noexcept {
-    Entity found;
-    world.each<Molecule>([&](Entity entity, const Molecule& molecule) {
-        if (molecule.name == name) found = entity;
-    });
-    return found;
-}
-
 Entity create_molecule(World& world, Molecule molecule, Mobility mobility, Source source) {
     const Entity entity = world.create();
     world.set(entity, std::move(molecule));
@@ -89,19 +81,6 @@ void set_interactions(World& world) {
     }
     world.set_resource(std::move(interactions));
     set_solvation(world);
-}
-
-void set_shape(World& world, Entity entity, const Quat& orientation) {
-    const Molecule& molecule = *world.find<Molecule>(entity);
-    const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
-    RigidShape shape{{}, orientation};
-    const Mat3 back = orientation.toRotationMatrix().transpose();
-    const bool is_turned = orientation.coeffs() != Quat::Identity().coeffs();
-    for (std::uint32_t i = 0; i < molecule.atoms.count; ++i) {
-        const Vec3 arm = positions[molecule.atoms.first + i] - positions[molecule.reference_atom];
-        shape.atoms.push_back(is_turned ? Vec3(back * arm) : arm);
-    }
-    world.set(entity, std::move(shape));
 }
 
 void set_start_places(World& world, Entity entity) {

@@ -1,16 +1,15 @@
 // Edits between two steps: what hands take, what is added and removed, and the way back.
-#include "simulation/edit.h"
+#include "loading/edit.h"
 #include "session/undo_history.h"
 
 #include "core/files.h"
 #include "core/units.h"
 #include "field/pair_field.h"
 #include "formats/structure.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/mechanics.h"
-#include "simulation/molecules.h"
 #include "simulation/solver.h"
 #include "simulation/step.h"
 #include "tests/support/load_error_of.h"
@@ -81,7 +80,7 @@ TEST_CASE("any molecule can be taken as a whole", "[simulation][edit]") {
     const Entity hand = hand_at(world, 0);
     const std::vector<Vec3> before = world.resource<AtomTable>().positions;
 
-    TakeEdit{"resting"}.apply(world, 0);
+    GrabEdit{"resting"}.apply(world, 0);
 
     CHECK(world.resource<AtomTable>().positions == before);
     CHECK(grip_of(world, hand).molecule == molecule_called(world, "resting"));
@@ -112,7 +111,7 @@ TEST_CASE("any residue or atom can be taken by a spring, in rigid scenes too",
     const std::string name = is_residue ? "3" : "3 CB";
     const Vec3 start = middle_of_residue(world, "resting", name);
 
-    TakeEdit{"resting:" + name}.apply(world, 0);
+    GrabEdit{"resting:" + name}.apply(world, 0);
 
     CHECK((held_place(world, hand) - start).norm() < 1e-9);
     CHECK(contact_at(world, 0).model.force_newton.norm() < 1e-15);
@@ -127,7 +126,7 @@ TEST_CASE("any residue or atom can be taken by a spring, in rigid scenes too",
     CHECK((felt.force_newton - expected).norm() < 1e-9 * expected.norm());
 
     // A hand that lets go gives back what the molecule may do, and feels nothing.
-    LetGoEdit{}.apply(world, 0);
+    ReleaseEdit{}.apply(world, 0);
     CHECK(world.find<Grip>(hand) == nullptr);
     CHECK(contact_at(world, 0).model.is_still);
     CHECK(contact_at(world, 0).model.force_newton.norm() == 0);
@@ -143,7 +142,7 @@ TEST_CASE("what is in hand goes back to where it was at the start, whatever was 
     World world = is_rigid ? load_rigid() : load_two();
     const std::vector<Vec3> start = world.resource<AtomTable>().positions;
     const Entity hand = hand_at(world, 0);
-    TakeEdit{what}.apply(world, 0);
+    GrabEdit{what}.apply(world, 0);
     ContactModel felt = contact_at(world, 0).model;
     for (int i = 1; i <= 40; ++i) felt = test::step_once(world, hand_after({0, 0.05 * i, 0}), felt);
     const AtomRange own = held_range(world, hand);
@@ -184,7 +183,7 @@ TEST_CASE("nothing goes back onto what is there now, or out of another hand",
                Contains("'moved' would overlap") && Contains("room where it was at the start"));
 
     CHECK(world_bytes(world) == before);
-    LetGoEdit{}.apply(world, 0);
+    ReleaseEdit{}.apply(world, 0);
     CHECK_THAT(load_error_of([&] { PutBackEdit{}.apply(world, 0); }),
                Contains("the hand holds nothing"));
 }
@@ -417,8 +416,8 @@ TEST_CASE("an edit that cannot be made leaves everything as it was, and says why
         const char* what;
     };
     const auto row = GENERATE(values<Row>({
-        {TakeEdit{"nobody"}, "there is no molecule 'nobody'; there are resting, held"},
-        {TakeEdit{"held:99"}, "'held' has no residue or atom \"99\""},
+        {GrabEdit{"nobody"}, "there is no molecule 'nobody'; there are resting, held"},
+        {GrabEdit{"held:99"}, "'held' has no residue or atom \"99\""},
         {AddEdit{"XYZ", "", "new", {}}, "no residue 'XYZ'"},
         {AddEdit{"", "held", "resting", {}}, "there is already a molecule 'resting'"},
         {AddEdit{"", "held", "a:b", {}}, "'a:b' is not a name of a molecule"},
@@ -461,9 +460,9 @@ TEST_CASE("undo and redo lead back through random edits and moves, to the byte",
         const std::string who = draw(2) == 0 ? first : second;
         switch (draw(6)) {
             case 0:
-                return TakeEdit{who};
+                return GrabEdit{who};
             case 1:
-                return TakeEdit{who + (is_mobile ? ":2 CA" : ":1")};
+                return GrabEdit{who + (is_mobile ? ":2 CA" : ":1")};
             case 2:
                 return AddEdit{"",
                                who,
@@ -533,10 +532,10 @@ TEST_CASE("undo takes back a grip from taking hold to letting go", "[simulation]
     World world = load_rigid();
     UndoHistory history;
     const std::string before = world_bytes(world);
-    history.apply(world, edit_of(TakeEdit{"resting:2"}));
+    history.apply(world, edit_of(GrabEdit{"resting:2"}));
     for (int i = 1; i <= 5; ++i)
         (void)test::step_once(world, hand_after({0, 0.1 * i, 0}), contact_at(world, 0).model);
-    history.apply(world, edit_of(LetGoEdit{}));
+    history.apply(world, edit_of(ReleaseEdit{}));
     const std::string after = world_bytes(world);
 
     history.apply(world, edit_of(UndoEdit{}));
@@ -553,15 +552,15 @@ TEST_CASE("what a scene began with is let go, and that is undone", "[simulation]
     World world = load_rigid();
     UndoHistory history;
     const std::string before = world_bytes(world);
-    history.apply(world, edit_of(LetGoEdit{}));
+    history.apply(world, edit_of(ReleaseEdit{}));
     CHECK(world.find<Grip>(hand_at(world, 0)) == nullptr);
     history.apply(world, edit_of(UndoEdit{}));
     CHECK(world_bytes(world) == before);
 
     // What was undone is gone once anything else is done.
-    history.apply(world, edit_of(TakeEdit{"resting:2"}));
+    history.apply(world, edit_of(GrabEdit{"resting:2"}));
     history.apply(world, edit_of(UndoEdit{}));
-    history.apply(world, edit_of(LetGoEdit{}));
+    history.apply(world, edit_of(ReleaseEdit{}));
     CHECK(history.redo_name().empty());
 }
 
@@ -569,16 +568,16 @@ TEST_CASE("two hands at one molecule leave it as it was, whichever lets go first
           "[simulation][edit]") {
     World world = load_world(read_scene(test::in_project("scenes/water/two-hands.toml")));
     const std::vector<Entity> hands = find_hands(world);
-    LetGoEdit{}.apply(world, 0);
-    LetGoEdit{}.apply(world, 1);
+    ReleaseEdit{}.apply(world, 0);
+    ReleaseEdit{}.apply(world, 1);
     const Entity molecule = molecule_called(world, "standing");
     const Mobility own = *world.find<Mobility>(molecule);
     const std::size_t first = GENERATE(0, 1);
     const bool is_whole = GENERATE(false, true);
-    TakeEdit{is_whole ? "standing" : "standing:1"}.apply(world, 0);
-    TakeEdit{"standing:1"}.apply(world, 1);
-    LetGoEdit{}.apply(world, first);
-    LetGoEdit{}.apply(world, 1 - first);
+    GrabEdit{is_whole ? "standing" : "standing:1"}.apply(world, 0);
+    GrabEdit{"standing:1"}.apply(world, 1);
+    ReleaseEdit{}.apply(world, first);
+    ReleaseEdit{}.apply(world, 1 - first);
     CHECK(world.find<Mobility>(molecule)->motion == own.motion);
     CHECK(world.find<Mobility>(molecule)->shape == own.shape);
 }
@@ -602,7 +601,7 @@ TEST_CASE("a reset is the scene as its file has it, and can be undone", "[simula
     const CouplingMode mode = coupling_of(world, hand_at(world, 0)).description.mode;
     UndoHistory history;
     history.apply(world, edit_of(AddEdit{"", name, "another", {30, 0, 0}}));
-    history.apply(world, edit_of(TakeEdit{"another"}));
+    history.apply(world, edit_of(GrabEdit{"another"}));
     history.apply(world, edit_of(CouplingEdit{{"mode=3"}}));
     (void)test::step_once(world, hand_after({0.3, 0.2, 0}), contact_at(world, 0).model);
     const std::string changed = world_bytes(world);
@@ -632,7 +631,7 @@ TEST_CASE("a reset to files that are gone leaves everything as it was",
     std::filesystem::copy(test::in_project("scenes/water"), copy);
     World world = load_world(read_scene(copy));
     UndoHistory history;
-    history.apply(world, edit_of(TakeEdit{"fixed"}));
+    history.apply(world, edit_of(GrabEdit{"fixed"}));
     const std::string before = world_bytes(world);
     std::filesystem::remove(copy / "dimer.crd");
 
@@ -720,8 +719,8 @@ TEST_CASE("a rigid molecule keeps its orientation from one grip to the next",
     const Quat turned = pose.molecule->orientation;
     const std::vector<Vec3> before = world.resource<AtomTable>().positions;
 
-    LetGoEdit{}.apply(world, 0);
-    TakeEdit{name}.apply(world, 0);
+    ReleaseEdit{}.apply(world, 0);
+    GrabEdit{name}.apply(world, 0);
 
     CHECK(grip_of(world, hand).pose.orientation.angularDistance(turned) < 1e-12);
     pose.molecule = grip_of(world, hand).pose;
@@ -733,8 +732,8 @@ TEST_CASE("a rigid molecule keeps its orientation from one grip to the next",
     // From the start again it is as loaded.
     PutBackEdit{}.apply(world, 0);
     CHECK(grip_of(world, hand).pose.orientation.angularDistance(Quat::Identity()) < 1e-12);
-    LetGoEdit{}.apply(world, 0);
-    TakeEdit{name}.apply(world, 0);
+    ReleaseEdit{}.apply(world, 0);
+    GrabEdit{name}.apply(world, 0);
     CHECK(grip_of(world, hand).pose.orientation.angularDistance(Quat::Identity()) < 1e-12);
 }
 

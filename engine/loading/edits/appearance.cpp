@@ -1,6 +1,6 @@
+#include "loading/edits/changes.h"
 #include "scene/description.h"
 #include "scene/edits.h"
-#include "simulation/edits/changes.h"
 
 namespace palpa {
 

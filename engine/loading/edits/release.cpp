@@ -1,9 +1,9 @@
+#include "loading/edits/changes.h"
 #include "scene/edits.h"
-#include "simulation/edits/changes.h"
 
 namespace palpa {
 
-void LetGoEdit::apply(World& world, std::size_t slot) const {
+void ReleaseEdit::apply(World& world, std::size_t slot) const {
     const Entity hand = find_hand(world, slot);
     edit_whole(world, [&](World& changed) { release(changed, hand); });
 }

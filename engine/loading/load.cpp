@@ -1,4 +1,4 @@
-#include "simulation/load.h"
+#include "loading/load.h"
 
 #include "charmm/assign.h"
 #include "charmm/build_topology.h"
@@ -10,18 +10,19 @@
 #include "core/text.h"
 #include "core/translate.h"
 #include "core/units.h"
+#include "loading/engine_atoms.h"
+#include "loading/molecules.h"
+#include "loading/named_parts.h"
+#include "loading/sources.h"
 #include "simulation/bonded_terms.h"
 #include "simulation/components.h"
 #include "simulation/coupling.h"
 #include "simulation/grip_queries.h"
 #include "simulation/mechanics.h"
-#include "simulation/molecules.h"
-#include "simulation/named_parts.h"
 #include "simulation/probe.h"
 #include "simulation/select_in_world.h"
 #include "simulation/solvent.h"
 #include "simulation/solver.h"
-#include "simulation/sources.h"
 #include "simulation/systems/publish_contact.h"
 
 #include <fmt/format.h>
@@ -42,10 +43,10 @@ namespace {
 // Below this the grabbed molecule is at rest; relaxing goes on to a two-hundredth of it.
 constexpr double resting_force = 20e-12 / units::newton_per_kcal_per_mol_angstrom;
 
-// By name, or by residue number and name.
+// Finds it by name, or by residue number and name.
 std::uint32_t find_reference_atom(const MoleculeDescription& molecule, const AtomTable& atoms,
                                   AtomRange range) {
-    if (molecule.reference_atom.empty()) return range.first;  // of a remote engine's
+    if (molecule.reference_atom.empty()) return range.first;  // a remote engine moves it
     const std::vector<std::string_view> words = split_words(molecule.reference_atom);
     std::uint32_t reference = 0;
     int matches = 0;
@@ -82,7 +83,7 @@ void add_molecule(const SceneDescription& scene, const MoleculeDescription& mole
     if (look.representation || look.colouring || !look.visible) world.set(entity, look);
 }
 
-// Every so many steps, what relaxing has come to; nothing where nobody waits.
+// Reports the state of relaxation every so many steps; empty if nobody waits.
 RelaxProgressFunction tell_relaxing(const StageFunction& on_stage) {
     if (!on_stage) return {};
     return [&on_stage](const RelaxProgress& progress) {
@@ -121,7 +122,7 @@ void relax_grabbed(const SceneDescription& scene, const HandTables& tables, Enti
     if (!rigid) rigid = report;
 }
 
-// Nothing is felt from farther away, and looking for what is would take minutes.
+// Refuses a start so far away that nothing is felt, where a search for atoms would take minutes.
 void check_distance(const SceneDescription& scene, const HandTables& tables, Entity hand,
                     const World& world) {
     constexpr double farthest = 1000;  // Å
@@ -134,7 +135,7 @@ void check_distance(const SceneDescription& scene, const HandTables& tables, Ent
                     tables.grab.molecule, tables.grab.measured_from, distance, farthest));
 }
 
-// Where the hand holds a molecule on a line.
+// The distance at which the hand holds a molecule on a line.
 double find_start(const SceneDescription& scene, const HandTables& tables, Entity hand,
                   const World& world, double distance) {
     if (tables.hand.start_angstrom) return *tables.hand.start_angstrom;
@@ -182,7 +183,7 @@ void start_grabbed(const SceneDescription& scene, const HandTables& tables, Enti
     grip.is_new = false;
 }
 
-// Of a molecule, an atom or a residue that the scene names at `place`.
+// The atoms of an atom or residue of a molecule that the scene names at `place`.
 std::vector<std::uint32_t> find_named_atoms(const World& world, Entity molecule,
                                             const std::string& name, const TextPlace& place) {
     std::vector<std::uint32_t> atoms = atoms_called(world, molecule, name);
@@ -231,7 +232,7 @@ AtomsOf find_part_at_first(const SceneDescription& scene, const HandTables& tabl
     return part;
 }
 
-// What the hand holds at first, and how it moves it.
+// The grip of the hand at first.
 Grip build_grip(const SceneDescription& scene, const HandTables& tables, bool is_whole,
                 const World& world) {
     const GrabDescription& grab = tables.grab;
@@ -249,40 +250,48 @@ Grip build_grip(const SceneDescription& scene, const HandTables& tables, bool is
     return grip;
 }
 
-// They take hold in the order of their devices.
+// Sets the grip, and the spring if the hand holds a part. Throws LoadError if another hand holds
+// the molecule as a whole, too.
+void set_grip(const SceneDescription& scene, const HandTables& tables, Entity hand, World& world) {
+    AtomsOf part = find_part_at_first(scene, tables, world);
+    const bool is_whole = part.atoms.empty();
+    Grip grip = build_grip(scene, tables, is_whole, world);
+    world.write_each<Grip>([&](Entity holder, Grip& other) {
+        if (other.molecule != grip.molecule) return;
+        // The hand that holds it as a whole knows its mobility without hands.
+        (is_whole ? other : grip).before = (is_whole ? grip : other).before;
+        if (!holds_whole(world, holder) || !is_whole) return;
+        throw LoadError(scene.place_of(tables.grab_key + ".molecule"),
+                        fmt::format("two hands hold '{0}' as a whole; expected another molecule, "
+                                    "or one of them to hold an atom or a residue of it by a "
+                                    "spring ({1}.atom)",
+                                    tables.grab.molecule, tables.grab_key));
+    });
+    world.set(hand, Hand{.turns = grip.freedom == 6});
+    world.set(hand, std::move(grip));
+    if (!is_whole)
+        hold_by_spring(world, hand, std::move(part), tables.grab.spring_kcal_per_mol_angstrom2);
+}
+
+// Creates the hands in the order of their devices.
 void add_hands(const SceneDescription& scene, World& world) {
     std::size_t slot = 0;
+    const std::string& first_origin = scene.hands.front().grab.measured_from;
     for (const HandTables& tables : list_hands(scene)) {
-        const Coupling coupling =
-            build_coupling(coupling_of(scene, slot++), tables.hand.coupling.has_value());
-        if (tables.grab.molecule.empty()) {
-            const Entity hand = world.create();
-            world.set(hand, coupling);
+        const Entity hand = world.create();
+        world.set(hand,
+                  build_coupling(coupling_of(scene, slot++), tables.hand.coupling.has_value()));
+        const GrabDescription& grab = tables.grab;
+        world.set(hand, GripSettings{grab.measured_from.empty() ? first_origin : grab.measured_from,
+                                     grab.spring_kcal_per_mol_angstrom2,
+                                     Vec3(tables.hand.start_offset_angstrom.data())});
+        if (grab.molecule.empty()) {
             world.set(hand, Hand{.turns = !scene.has_statics()});
             world.set(hand, Contact{build_still_contact(world), {}});
-            continue;
+        } else {
+            set_grip(scene, tables, hand, world);
+            world.set(hand, Contact{});
         }
-        AtomsOf part = find_part_at_first(scene, tables, world);
-        const bool is_whole = part.atoms.empty();
-        Grip grip = build_grip(scene, tables, is_whole, world);
-        world.write_each<Grip>([&](Entity holder, Grip& other) {
-            if (other.molecule != grip.molecule) return;
-            // Who holds it as a whole knows what it is without hands.
-            (is_whole ? other : grip).before = (is_whole ? grip : other).before;
-            if (!holds_whole(world, holder) || !is_whole) return;
-            throw LoadError(scene.place_of(tables.grab_key + ".molecule"),
-                            fmt::format("two hands hold '{0}' as a whole; expected another "
-                                        "molecule, or one of them to hold an atom or a residue of "
-                                        "it by a spring ({1}.atom)",
-                                        tables.grab.molecule, tables.grab_key));
-        });
-        const Entity hand = world.create();
-        world.set(hand, coupling);
-        world.set(hand, Hand{.turns = grip.freedom == 6});
-        world.set(hand, grip);
-        if (!is_whole)
-            hold_by_spring(world, hand, std::move(part), tables.grab.spring_kcal_per_mol_angstrom2);
-        world.set(hand, Contact{});
     }
 }
 
@@ -310,12 +319,6 @@ void set_settings(const SceneDescription& scene, std::shared_ptr<const ForceFiel
     if (mechanics.joints.around.empty())
         mechanics.joints.around = scene.hands.front().grab.molecule;
     world.set_resource(std::move(mechanics));
-    GrabSettings grab{scene.hands.front().grab.measured_from,
-                      scene.hands.front().grab.spring_kcal_per_mol_angstrom2,
-                      {}};
-    for (const HandTables& tables : list_hands(scene))
-        grab.start_offsets.emplace_back(tables.hand.start_offset_angstrom.data());
-    world.set_resource(std::move(grab));
 }
 
 // Molecules as files have them; nobody holds anything.
@@ -355,10 +358,7 @@ void check_laws(const SceneDescription& scene) {
         key = tables.hand_key + "." + key;
     }
     if (can) return;
-    throw LoadError(
-        scene.place_of(key),
-        "eq. 2 with these F_h1_N, F_h2_N and F_0_nN cannot have the slopes A_f_max at 0 and "
-        "A_f_min at F_0; expected other values, or coupling.force_law = \"printed\"");
+    throw LoadError(scene.place_of(key), why_no_laws);
 }
 
 }  // namespace
@@ -368,7 +368,8 @@ World load_world(const SceneDescription& scene, const StageFunction& on_stage) {
     World world = read_world(scene, on_stage);
     add_hands(scene, world);
     if (scene.engine) {
-        set_remote_engine(scene, world);
+        set_remote_engine(*scene.engine, find_engine_atoms(scene, world.resource<AtomTable>()),
+                          world);
         hold_engine_atoms(world);
     }
     for (const MoleculeDescription& molecule : scene.molecules) add_anchors(scene, molecule, world);

@@ -1,4 +1,4 @@
-#include "simulation/edits/changes.h"
+#include "loading/edits/changes.h"
 
 #include "simulation/grip_queries.h"
 #include "simulation/mechanics.h"
@@ -14,19 +14,6 @@
 namespace palpa {
 namespace {
 
-void refresh_contact(World& world, Entity hand) {
-    Contact& contact = *world.write<Contact>(hand);
-    const std::uint32_t grip_number = contact.sent.model.grip_number;
-    contact.near = {};
-    if (world.find<Grip>(hand)) {
-        update_near(world, hand);
-        contact.sent = build_local_contact(world, hand, {});
-    } else {
-        contact.sent = build_still_contact(world);
-    }
-    contact.sent.model.grip_number = grip_number;
-}
-
 bool can_move_by_itself(const Mobility& mobility) {
     return mobility.motion == Motion::Free || mobility.shape == Shape::Flexible;
 }
@@ -35,7 +22,10 @@ bool can_move_by_itself(const Mobility& mobility) {
 
 void settle_edit(World& world) {
     rebuild_mechanics(world);
-    for (const Entity hand : find_hands(world)) refresh_contact(world, hand);
+    for (const Entity hand : find_hands(world)) {
+        world.write<Contact>(hand)->near = {};
+        renew_contact(world, hand);
+    }
 }
 
 Entity find_hand(const World& world, std::size_t hand) {
@@ -70,7 +60,7 @@ void release(World& world, Entity hand) {
         shape->orientation = grip.pose.orientation;
     world.remove<Grip>(hand);
     world.remove<Spring>(hand);
-    take_hold_anew(world, hand);
+    begin_new_grip(world, hand);
     const Entity other = other_holder(world, hand, grip.molecule);
     Mobility& mobility = *world.write<Mobility>(grip.molecule);
     if (other == Entity{}) {
@@ -82,7 +72,7 @@ void release(World& world, Entity hand) {
     free_for_spring(mobility);
 }
 
-void take_hold_anew(World& world, Entity hand) {
+void begin_new_grip(World& world, Entity hand) {
     ++world.write<Contact>(hand)->sent.model.grip_number;
 }
 

@@ -1,7 +1,7 @@
+#include "loading/edit.h"
+#include "loading/edits/changes.h"
+#include "loading/load.h"
 #include "scene/edits.h"
-#include "simulation/edit.h"
-#include "simulation/edits/changes.h"
-#include "simulation/load.h"
 #include "simulation/resources.h"
 
 namespace palpa {

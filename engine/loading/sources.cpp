@@ -1,4 +1,4 @@
-#include "simulation/sources.h"
+#include "loading/sources.h"
 
 #include "charmm/build_topology.h"
 #include "charmm/complete.h"

@@ -1,5 +1,5 @@
+#include "loading/edits/changes.h"
 #include "scene/edits.h"
-#include "simulation/edits/changes.h"
 
 namespace palpa {
 

@@ -13,7 +13,7 @@ class World;
 // The hand takes hold of a molecule as a whole, or of a residue or atom by a spring. It first
 // releases what it held. A molecule held as a whole follows the hand; at a spring it moves by
 // itself, even if it is otherwise fixed. On release it gets back its former mobility.
-struct TakeEdit {
+struct GrabEdit {
     static constexpr EditKind kind{.key = "take", .with_engine = true, .is_of_molecules = false};
 
     std::string what;
@@ -30,7 +30,7 @@ struct TakeEdit {
 
     void apply(World& world, std::size_t hand) const;
 
-    friend bool operator==(const TakeEdit&, const TakeEdit&) = default;
+    friend bool operator==(const GrabEdit&, const GrabEdit&) = default;
 };
 
 }  // namespace palpa

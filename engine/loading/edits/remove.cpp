@@ -1,7 +1,7 @@
+#include "loading/edits/changes.h"
+#include "loading/molecules.h"
 #include "scene/edits.h"
-#include "simulation/edits/changes.h"
 #include "simulation/grip_queries.h"
-#include "simulation/molecules.h"
 #include "simulation/resources.h"
 
 #include <fmt/format.h>

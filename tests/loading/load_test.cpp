@@ -1,4 +1,4 @@
-#include "simulation/load.h"
+#include "loading/load.h"
 #include "core/load_error.h"
 #include "simulation/components.h"
 #include "simulation/coupling.h"

@@ -1,7 +1,6 @@
+#include "loading/edits/changes.h"
 #include "scene/edits.h"
-#include "simulation/edits/changes.h"
 #include "simulation/grip_queries.h"
-#include "simulation/molecules.h"
 #include "simulation/resources.h"
 
 #include <fmt/format.h>
@@ -29,7 +28,7 @@ void PutBackEdit::apply(World& world, std::size_t slot) const {
                                : middle_of(changed, held_part_of(changed, hand));
         grip->pose = {place - grip->anchor, Quat::Identity()};
         if (changed.find<RigidShape>(grip->molecule)) set_shape(changed, grip->molecule);
-        take_hold_anew(changed, hand);
+        begin_new_grip(changed, hand);
     });
 }
 

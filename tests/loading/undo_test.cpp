@@ -1,10 +1,10 @@
 // Undo and redo through 1,000 random sequences of edits and moves, to the byte.
 #include "core/load_error.h"
+#include "loading/edit.h"
+#include "loading/load.h"
 #include "scene/read_scene.h"
 #include "session/undo_history.h"
-#include "simulation/edit.h"
 #include "simulation/grip_queries.h"
-#include "simulation/load.h"
 #include "simulation/resources.h"
 #include "simulation/step.h"
 #include "tests/support/paths.h"
@@ -119,13 +119,13 @@ private:
         switch (draw(14)) {
             case 0:
             case 1:
-                return TakeEdit{draw_molecule()};
+                return GrabEdit{draw_molecule()};
             case 2:
-                return TakeEdit{draw_part(false)};
+                return GrabEdit{draw_part(false)};
             case 3:
-                return TakeEdit{draw_part(true)};
+                return GrabEdit{draw_part(true)};
             case 4:
-                return LetGoEdit{};
+                return ReleaseEdit{};
             case 5:
                 return PutBackEdit{};
             case 6:
@@ -175,8 +175,8 @@ private:
         }
         made_.insert(edit.action.index());
         redone_.clear();
-        const bool takes = std::holds_alternative<TakeEdit>(edit.action);
-        const bool lets_go = std::holds_alternative<LetGoEdit>(edit.action);
+        const bool takes = std::holds_alternative<GrabEdit>(edit.action);
+        const bool lets_go = std::holds_alternative<ReleaseEdit>(edit.action);
         // Letting go belongs to the entry of the hand's grip if that is the last one.
         if ((takes || lets_go) && end_grip(edit.hand) && lets_go) return;
         undone_.push_back({std::move(before), takes ? std::optional(edit.hand) : std::nullopt});

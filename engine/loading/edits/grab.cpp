@@ -1,8 +1,7 @@
+#include "loading/edits/changes.h"
 #include "scene/edits.h"
-#include "simulation/edits/changes.h"
 #include "simulation/grip_queries.h"
 #include "simulation/mechanics.h"
-#include "simulation/molecules.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"
 
@@ -17,26 +16,27 @@ Motion motion_in_hand(const World& world, Entity hand) {
     return world.find<Hand>(hand)->turns ? Motion::WithHandle : Motion::Translate;
 }
 
-// The molecule that the scene measures from, or the held one itself.
-Entity find_origin(const World& world, Entity molecule) {
-    const Entity origin = molecule_called(world, world.resource<GrabSettings>().measured_from);
+// The molecule that the hand's distances are measured from, or the held one itself.
+Entity find_origin(const World& world, Entity hand, Entity molecule) {
+    const Entity origin = molecule_called(world, world.find<GripSettings>(hand)->measured_from);
     return origin == Entity{} ? molecule : origin;
 }
 
-// Adds the hand's spring where `part` has atoms, as stiff as the scene has it.
+// Adds the hand's spring, as stiff as the scene has it, if `part` has atoms.
 void set_spring(World& world, Entity hand, const AtomsOf& part) {
     if (part.atoms.empty()) return;
-    hold_by_spring(world, hand, part, world.resource<GrabSettings>().spring_kcal_per_mol_angstrom2);
+    hold_by_spring(world, hand, part,
+                   world.find<GripSettings>(hand)->spring_kcal_per_mol_angstrom2);
 }
 
-Grip build_grip(const World& world, const AtomsOf& part) {
+Grip build_grip(const World& world, Entity hand, const AtomsOf& part) {
     Grip grip;
     grip.molecule = part.molecule;
-    // The mobility while nobody holds it.
+    // Keeps the mobility that the molecule has while no hand holds it.
     const Entity other = other_holder(world, {}, part.molecule);
     grip.before =
         other == Entity{} ? *world.find<Mobility>(part.molecule) : grip_of(world, other).before;
-    grip.measured_from = find_origin(world, part.molecule);
+    grip.measured_from = find_origin(world, hand, part.molecule);
     const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
     const Molecule& origin = *world.find<Molecule>(grip.measured_from);
     const Molecule& molecule = *world.find<Molecule>(part.molecule);
@@ -53,7 +53,7 @@ Grip build_grip(const World& world, const AtomsOf& part) {
 
 }  // namespace
 
-void TakeEdit::apply(World& world, std::size_t slot) const {
+void GrabEdit::apply(World& world, std::size_t slot) const {
     const Entity hand = find_hand(world, slot);
     edit_whole(world, [&](World& changed) {
         AtomsOf part = find_atoms(changed, what);
@@ -61,9 +61,9 @@ void TakeEdit::apply(World& world, std::size_t slot) const {
         // A remote engine's atoms are held by springs alone.
         if (!places_atoms(changed)) {
             if (part.atoms.empty()) part.atoms = all_atoms_of(changed, part.molecule);
-            changed.set(hand, build_grip(changed, part));
+            changed.set(hand, build_grip(changed, hand, part));
             set_spring(changed, hand, part);
-            take_hold_anew(changed, hand);
+            begin_new_grip(changed, hand);
             return;
         }
         const bool is_whole = part.atoms.empty();
@@ -74,7 +74,7 @@ void TakeEdit::apply(World& world, std::size_t slot) const {
                             "atom of it, as \"{}:25 CA\"",
                             what, what));
         }
-        Grip grip = build_grip(changed, part);
+        Grip grip = build_grip(changed, hand, part);
         Mobility& mobility = *changed.write<Mobility>(part.molecule);
         if (is_whole) {
             mobility.motion = motion_in_hand(changed, hand);
@@ -87,7 +87,7 @@ void TakeEdit::apply(World& world, std::size_t slot) const {
         if (needs_mechanics(changed) && is_whole) grip.pose.orientation = Quat::Identity();
         changed.set(hand, std::move(grip));
         set_spring(changed, hand, part);
-        take_hold_anew(changed, hand);
+        begin_new_grip(changed, hand);
     });
 }
 

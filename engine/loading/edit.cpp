@@ -1,7 +1,7 @@
-#include "simulation/edit.h"
+#include "loading/edit.h"
 
+#include "loading/named_parts.h"
 #include "simulation/components.h"
-#include "simulation/named_parts.h"
 #include "simulation/playback.h"
 #include "simulation/resources.h"
 #include "simulation/solver.h"

@@ -11,7 +11,7 @@ namespace palpa {
 class World;
 
 // The hand releases what it holds.
-struct LetGoEdit {
+struct ReleaseEdit {
     static constexpr EditKind kind{.key = "let_go", .with_engine = true, .is_of_molecules = false};
 
     void visit(FieldVisitor& v) { v.mark({.key = kind.key, .meaning = "the hand lets go"}); }
@@ -19,7 +19,7 @@ struct LetGoEdit {
 
     void apply(World& world, std::size_t hand) const;
 
-    friend bool operator==(const LetGoEdit&, const LetGoEdit&) = default;
+    friend bool operator==(const ReleaseEdit&, const ReleaseEdit&) = default;
 };
 
 }  // namespace palpa

@@ -1,6 +1,6 @@
 #include "simulation/coupling.h"
+#include "loading/edits/changes.h"
 #include "scene/edits.h"
-#include "simulation/edits/changes.h"
 
 namespace palpa {
 

@@ -1,7 +1,6 @@
-#include "simulation/named_parts.h"
+#include "loading/named_parts.h"
 
 #include "simulation/grip_queries.h"
-#include "simulation/molecules.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

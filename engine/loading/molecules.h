@@ -4,12 +4,7 @@
 #include "ecs/world.h"
 #include "simulation/components.h"
 
-#include <string_view>
-
 namespace palpa {
-
-// A null entity if no molecule has that name.
-Entity molecule_called(const World& world, std::string_view name) noexcept;
 
 // Creates a molecule from atoms of the table, at rest at their positions.
 Entity create_molecule(World& world, Molecule molecule, Mobility mobility, Source source);
@@ -22,14 +17,11 @@ AtomRange add_segment_atoms(const ForceField& force_field, const Source& source,
 // LoadError as set_solvation (simulation/solvent.h) does.
 void set_interactions(World& world);
 
-// Makes a molecule rigid from its present position on, in which it is turned by so much.
-void set_shape(World& world, Entity molecule, const Quat& orientation = Quat::Identity());
-
-// It starts where its atoms are now (StartPlaces).
+// Notes the present positions of its atoms as its start (StartPlaces).
 void set_start_places(World& world, Entity molecule);
 
-// Its atoms leave the table, and it the world; atoms behind it move up. Types are numbered as in a
-// table that never had it.
+// Removes the molecule and its atoms; atoms behind them move up in the table. Types are numbered as
+// in a table that never had them.
 void remove_atoms(World& world, Entity molecule);
 
 }  // namespace palpa

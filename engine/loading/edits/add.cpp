@@ -1,11 +1,11 @@
 #include "charmm/force_field.h"
+#include "loading/edits/changes.h"
+#include "loading/molecules.h"
+#include "loading/sources.h"
 #include "scene/edits.h"
-#include "simulation/edits/changes.h"
 #include "simulation/grip_queries.h"
 #include "simulation/mechanics.h"
-#include "simulation/molecules.h"
 #include "simulation/resources.h"
-#include "simulation/sources.h"
 
 #include <fmt/format.h>
 #include <cstdint>
