@@ -216,7 +216,7 @@ AtomRange add_engine_atoms(const Source& source, AtomTable& table) {
                 fmt::format("atom {} has no coordinates in {}", to_string(name), structure.file));
         }
         at[i] = static_cast<std::int64_t>(table.size());
-        // The name first: hydrogens may have been given mass of their neighbours.
+        // Prefers the name: a hydrogen may have been given mass of its neighbour.
         std::string element = find_element_of_name(name.atom, name.residue);
         if (element.empty()) element = element_of_mass(connectivity->mass[i]);
         add_atom(name, structure.positions[found->second], std::move(element),

@@ -1,5 +1,5 @@
-// Atoms of a scene that a remote engine moves ([engine]): what the structures have of them, and
-// which of the engine's atoms they are.
+// Reads the atoms of a scene that a remote engine moves ([engine]), and finds which of the engine's
+// atoms they are.
 #pragma once
 #include "molecule/atoms.h"
 #include "scene/description.h"

@@ -40,7 +40,7 @@
 namespace palpa {
 namespace {
 
-// Below this the grabbed molecule is at rest; relaxing goes on to a two-hundredth of it.
+// The force below which the grabbed molecule is at rest; relaxing goes on to a two-hundredth of it.
 constexpr double resting_force = 20e-12 / units::newton_per_kcal_per_mol_angstrom;
 
 // Finds it by name, or by residue number and name.

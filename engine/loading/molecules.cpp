@@ -36,7 +36,7 @@ void erase(AtomRange range, SharedVector<Value>& shared) {
     column.erase(first, first + range.count);
 }
 
-// In the order of the atoms that have them, as loading numbers them.
+// Numbers types in the order of the atoms that have them, as loading does.
 void renumber_types(AtomTable& atoms) {
     std::vector<std::string> names;
     for (std::uint32_t& type : atoms.type.write()) {

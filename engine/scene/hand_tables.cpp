@@ -49,9 +49,17 @@ toml::table take_second(toml::table& root) {
     return std::move(*hand);
 }
 
+// Throws LoadError if the first hand's grip is given twice.
+void check_grab(const toml::table& hand, const toml::table& root) {
+    const toml::node* const grab = hand.get("grab");
+    if (!grab || !root.contains("grab")) return;
+    const toml::source_region& source = grab->source();
+    throw LoadError({source.path ? *source.path : "", source.begin.line, source.begin.column},
+                    "the first hand has a table [grab] and a table [hand.grab]; expected one");
+}
+
 // Moves the grip, device and coupling of the only hand into the tables of the scene.
 void move_parts_out(toml::table& hand, toml::table& root) {
-    if (hand.contains("grab") && root.contains("grab")) return;
     for (const std::string_view part : {"grab", "device", "coupling"}) {
         std::optional<toml::table> own = take_table(part, hand);
         if (!own) continue;
@@ -65,9 +73,7 @@ void move_parts_out(toml::table& hand, toml::table& root) {
 void flatten(toml::table& root) {
     toml::array* const list = root["hand"].as_array();
     if (!list || list->size() != 1 || !list->front().is_table()) return;
-    toml::table& only = *list->front().as_table();
-    if (only.contains("grab") && root.contains("grab")) return;
-    toml::table hand = std::move(only);
+    toml::table hand = std::move(*list->front().as_table());
     move_parts_out(hand, root);
     root.insert_or_assign("hand", std::move(hand));
 }
@@ -100,9 +106,13 @@ void gather_hands(toml::table& root) {
         toml::array* const list = list_of_hands(root);
         if (list && list->size() == 1) list->push_back(take_second(root));
     }
-    if (toml::table* const only = root["hand"].as_table()) return move_parts_out(*only, root);
+    if (toml::table* const only = root["hand"].as_table()) {
+        check_grab(*only, root);
+        return move_parts_out(*only, root);
+    }
     toml::array* const list = root["hand"].as_array();
     if (!list || list->empty() || !list->front().is_table()) return;
+    check_grab(*list->front().as_table(), root);
     move_into("grab", root, *list->front().as_table());
     flatten(root);
 }

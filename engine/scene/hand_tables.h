@@ -14,7 +14,7 @@ void merge(toml::table from, toml::table& onto);
 
 // Reads [second.hand] and [second.grab], the second hand until format 2.1, as the second entry of
 // [[hand]], and [hand] and [grab] as the first. One hand, in a list or with [hand.grab], becomes
-// [hand] and [grab].
+// [hand] and [grab]. Throws LoadError if the first hand has both [grab] and [hand.grab].
 void gather_hands(toml::table& root);
 
 // True for a key of a second or further hand: "hand[2].stroke", "second.grab.atom".

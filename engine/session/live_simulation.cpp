@@ -176,7 +176,9 @@ void LiveSimulation::set(const LiveSettings& settings) {
     if (can_build_laws(settings.coupling)) {
         coupling_of(scene_, 0) = settings.coupling;
     } else {
-        readout_.problem = std::string(why_no_laws) + "; the previous force law stays";
+        readout_.problem =
+            "eq. 2 with these values cannot reach the slopes A_f_max and A_f_min, so the previous "
+            "force law stays; change F_h1, F_h2 or F_0";
     }
     try {
         for (const HandDevice& device : devices_)
@@ -393,10 +395,10 @@ std::optional<UnbindingPath> LiveSimulation::unbinding() const {
 }
 
 std::vector<std::uint32_t> LiveSimulation::list_grip_numbers() const {
-    std::vector<std::uint32_t> starts;
+    std::vector<std::uint32_t> numbers;
     for (const Entity hand : find_hands(world_))
-        starts.push_back(contact_of(world_, hand).sent.model.grip_number);
-    return starts;
+        numbers.push_back(contact_of(world_, hand).sent.model.grip_number);
+    return numbers;
 }
 
 void LiveSimulation::begin_new_grips(std::span<const std::uint32_t> last_grip_numbers) {

@@ -118,7 +118,7 @@ private:
 
     double tick_s_;
     Summary running_;
-    Vec3 first_place_angstrom_ = Vec3::Zero();  // at the begin of the grip
+    Vec3 first_place_angstrom_ = Vec3::Zero();  // when the grip began
     std::uint32_t grip_number_ = 0;
     std::uint64_t clamped_ticks_ = 0, safety_ticks_ = 0, stop_ticks_ = 0;
     std::optional<Vec3> counted_m_;  // handle position up to which the way is counted

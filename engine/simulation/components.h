@@ -29,8 +29,8 @@ struct Molecule {
 };
 
 // For a rigid molecule outside of the mechanics that hands move: its atoms relative to the
-// reference atom (Å), as loaded, and its rotation about that atom since then, while no hand holds
-// it.
+// reference atom (Å), as loaded, and its rotation about that atom since then until the mechanics
+// were built. The pose of a hand that holds it outside of them has the present rotation.
 struct RigidShape {
     std::vector<Vec3> atoms;
     Quat orientation = Quat::Identity();

@@ -144,22 +144,30 @@ std::vector<std::uint32_t> atoms_called(const World& world, Entity molecule,
     return found;
 }
 
-Quat orientation_of(const World& world, Entity molecule) {
+namespace {
+
+// The rotation of a molecule since the mechanics were built; none outside of them.
+Quat find_turn(const World& world, Entity molecule) {
     const TorsionModel& model = model_of(world);
     const auto atom =
         model_atoms_of(world).in_model(world.find<Molecule>(molecule)->reference_atom);
-    if (atom && *atom < model.reference.size()) {
-        const std::uint32_t body = model.tree.bodies.body_of[*atom];
-        return world.resource<TorsionState>().turns[model.tree.molecule_of[body]];
-    }
+    if (!atom || *atom >= model.reference.size()) return Quat::Identity();
+    const std::uint32_t body = model.tree.bodies.body_of[*atom];
+    return world.resource<TorsionState>().turns[model.tree.molecule_of[body]];
+}
+
+}  // namespace
+
+Quat orientation_of(const World& world, Entity molecule) {
     const RigidShape* const shape = world.find<RigidShape>(molecule);
-    return shape ? shape->orientation : Quat::Identity();
+    const Quat turn = find_turn(world, molecule);
+    return shape ? Quat(turn * shape->orientation) : turn;
 }
 
 void set_shape(World& world, Entity entity, const Quat& orientation) {
     const Molecule& molecule = *world.find<Molecule>(entity);
     const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
-    RigidShape shape{{}, orientation};
+    RigidShape shape{{}, find_turn(world, entity).conjugate() * orientation};
     const Mat3 back = orientation.toRotationMatrix().transpose();
     const bool is_turned = orientation.coeffs() != Quat::Identity().coeffs();
     for (std::uint32_t i = 0; i < molecule.atoms.count; ++i) {

@@ -1,4 +1,4 @@
-// Queries about what hands hold and about its surroundings.
+// What hands hold and its surroundings: queries, and the functions that take, shape and move it.
 #pragma once
 #include "ecs/world.h"
 #include "field/pair_field.h"
@@ -61,7 +61,8 @@ Vec3 middle_of(const World& world, const AtomsOf& atoms);
 // "25" ("27A" with its insertion code), or its 17th atom, "#17". Empty if there is none.
 std::vector<std::uint32_t> atoms_called(const World& world, Entity molecule, std::string_view name);
 
-// Rotation of a molecule that no hand holds, since it was loaded or the mechanics were built.
+// The rotation of a molecule about its reference atom since it was loaded; of one that no hand
+// holds as a whole outside of the mechanics.
 Quat orientation_of(const World& world, Entity molecule);
 
 // Makes a molecule rigid at its present position, which is turned by `orientation` from the shape

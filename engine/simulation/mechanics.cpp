@@ -14,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace palpa {
 namespace {
@@ -49,7 +50,33 @@ void set_mechanics(TorsionModel model, ModelAtoms atoms, std::span<const HeldPar
     start_solver(world);
 }
 
+// Keeps the present rotations of rigid molecules, since new mechanics count from identity.
+void keep_orientations(World& world) {
+    std::vector<std::pair<Entity, Quat>> kept;
+    world.each<RigidShape>([&](Entity molecule, const RigidShape&) {
+        kept.emplace_back(molecule, orientation_of(world, molecule));
+        world.each<Grip>([&](Entity hand, const Grip& grip) {
+            if (grip.molecule == molecule && grip.base < 0 && holds_whole(world, hand))
+                kept.back().second = grip.pose.orientation;
+        });
+    });
+    for (const auto& [molecule, orientation] : kept)
+        world.write<RigidShape>(molecule)->orientation = orientation;
+}
+
+// Makes what hands hold as a whole rigid from here on.
+void make_held_rigid(World& world) {
+    for (const Entity hand : find_hands(world)) {
+        Grip* const grip = world.write<Grip>(hand);
+        if (!grip || grip->base < 0 || !holds_whole(world, hand)) continue;
+        grip->pose.orientation = orientation_of(world, grip->molecule);
+        set_shape(world, grip->molecule, grip->pose.orientation);
+    }
+}
+
 void clear_mechanics(World& world) {
+    make_held_rigid(world);
+    keep_orientations(world);
     world.set_resource(Mechanics{});
     world.set_resource(TorsionState{});
     world.set_resource(GatheredSprings{});
@@ -72,15 +99,10 @@ bool needs_mechanics(const World& world) {
 
 void rebuild_mechanics(World& world) {
     if (!places_atoms(world)) return hold_engine_atoms(world);
-    if (!needs_mechanics(world)) {
-        clear_mechanics(world);
-        return;
-    }
+    if (!needs_mechanics(world)) return clear_mechanics(world);
     MechanicsPlan plan = plan_mechanics(world);
-    if (plan.bodies.bodies.empty()) {
-        clear_mechanics(world);
-        return;
-    }
+    if (plan.bodies.bodies.empty()) return clear_mechanics(world);
+    keep_orientations(world);
     const std::vector<HeldPart> held = find_held(world, plan);
     TorsionModel model = build_model(world, plan, plan.bases);
     set_mechanics(std::move(model), std::move(plan.atoms), held, world);

@@ -3,7 +3,6 @@
 #include "core/translate.h"
 #include "haptics/gains.h"
 #include "haptics/hand.h"
-#include "loading/load.h"
 #include "session/run_headless.h"
 #include "simulation/coupling.h"
 #include "simulation/grip_queries.h"

@@ -2,7 +2,6 @@
 #include "core/translate.h"
 #include "haptics/gains.h"
 #include "haptics/hand.h"
-#include "loading/load.h"
 #include "simulation/coupling.h"
 #include "simulation/grip_queries.h"
 #include "ui/layout.h"

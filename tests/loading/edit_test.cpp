@@ -737,6 +737,49 @@ TEST_CASE("a rigid molecule keeps its orientation from one grip to the next",
     CHECK(grip_of(world, hand).pose.orientation.angularDistance(Quat::Identity()) < 1e-12);
 }
 
+TEST_CASE("a molecule that a hand turned at a spring has that orientation in the next grip",
+          "[simulation][edit]") {
+    World world = load_world(read_scene(test::in_project("scenes/water/space.toml")));
+    const Entity hand = hand_at(world, 0);
+    const Entity water = grip_of(world, hand).molecule;
+    const Molecule molecule = *world.find<Molecule>(water);
+    const auto arm_of = [&](std::uint32_t atom) {
+        const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
+        return Vec3(positions[molecule.atoms.first + atom] - positions[molecule.reference_atom]);
+    };
+    const Vec3 before = arm_of(1), other_before = arm_of(2);
+    GrabEdit{molecule.name + ":1 H1"}.apply(world, 0);
+    ContactModel felt = contact_at(world, 0).model;
+    for (int i = 1; i <= 40; ++i) felt = test::step_once(world, hand_after({0, 0.1 * i, 0}), felt);
+    REQUIRE((arm_of(1) - before).norm() > 0.2);
+
+    ReleaseEdit{}.apply(world, 0);
+    GrabEdit{molecule.name}.apply(world, 0);
+
+    const Quat turned = grip_of(world, hand).pose.orientation;
+    CHECK((turned * before - arm_of(1)).norm() < 1e-9);
+    CHECK((turned * other_before - arm_of(2)).norm() < 1e-9);
+}
+
+TEST_CASE("a molecule held from the start stays in hand when nothing else is mobile any more",
+          "[simulation][edit]") {
+    World world = load_two({"molecules.held.shape=rigid", "molecules.resting.shape=rigid",
+                            "molecules.resting.motion=free", "grab.measured_from=\"\""});
+    const Entity hand = hand_at(world, 0);
+    REQUIRE(grip_of(world, hand).base >= 0);
+    const Vec3 held = held_place(world, hand);
+    MobilityEdit{"resting", Motion::Fixed, {}}.apply(world, 0);
+    REQUIRE(grip_of(world, hand).base < 0);
+
+    const std::vector<Vec3> before = world.resource<AtomTable>().positions;
+    (void)test::step_once(world, hand_after({0.3, 0, 0}), contact_at(world, 0).model);
+    const Vec3 way = held_place(world, hand) - held;
+    CHECK(way.norm() > 0.1);
+    const AtomRange range = held_range(world, hand);
+    for (std::uint32_t i = range.first; i < range.first + range.count; ++i)
+        CHECK((world.resource<AtomTable>().positions[i] - before[i] - way).norm() < 1e-12);
+}
+
 TEST_CASE("a restraint pulls at both ends, and marks measure", "[simulation][edit]") {
     World world = load_two();
     const Vec3 apart =

@@ -382,10 +382,10 @@ TEST_CASE("lists of hands that cannot be are refused", "[scene][second][errors]"
                Contains("'hand' has 0 entries; expected 1 to 4"));
     CHECK_THAT(two_hands_error(before +
                                "[grab]\nmolecule = \"moved\"\nmeasured_from = \"fixed\"\n" + hand),
-               Contains("unknown key 'grab'"));
+               Contains("the first hand has a table [grab]"));
     CHECK_THAT(two_hands_error(before + "[grab]\nmolecule = \"moved\"\n[hand]\ngrab = {molecule = "
                                         "\"other\"}\n"),
-               Contains("unknown key 'hand.grab'"));
+               Contains("table [grab] and a table [hand.grab]; expected one"));
     CHECK_THAT(two_hands_error("hand = 3\n" + two_hands),
                Contains("'hand' is 3; expected a table, [hand]"));
     CHECK_THAT(two_hands_error("hand = [3, 4]\n" + before),

@@ -106,6 +106,7 @@ class FourHands(unittest.TestCase):
                               ("second.grab.atom", "grab.atom"), ("second.hand.grip", "hand.grip")):
             self.assertEqual(palpa("help", asked).stdout, palpa("help", listed).stdout, asked)
             self.assertTrue(palpa("help", asked).stdout, asked)
+        self.assertEqual(palpa("help", "hand[5].grip").returncode, 2)
 
     def test_the_text_summary_has_a_block_for_each_hand(self):
         self.assertIn("hand 1: mode 4, medium hand", self.output)

@@ -1,7 +1,6 @@
 #include "view/cartoon.h"
 
 #include "formats/crd.h"
-#include "loading/load.h"
 #include "render/renderer.h"
 #include "scene/read_scene.h"
 #include "simulation/resources.h"

@@ -1,6 +1,5 @@
 #include "view/clip.h"
 
-#include "loading/load.h"
 #include "render/renderer.h"
 #include "scene/read_scene.h"
 #include "simulation/grip_queries.h"

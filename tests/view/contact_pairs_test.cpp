@@ -1,6 +1,5 @@
 #include "view/contact_pairs.h"
 
-#include "loading/load.h"
 #include "simulation/grip_queries.h"
 #include "simulation/resources.h"
 #include "tests/support/held_scene.h"

@@ -6,7 +6,6 @@
 #include "formats/gro.h"
 #include "formats/psf.h"
 #include "formats/structure.h"
-#include "loading/sources.h"
 #include "molecule/alternatives.h"
 #include "scene/check_scene.h"
 #include "scene/find_scene.h"

@@ -23,7 +23,6 @@
 #include "view/first_view.h"
 
 #include <fmt/format.h>
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -122,6 +121,15 @@ void print_report(const SceneDescription& played, const WindowReport& report) {
     }
 }
 
+// The message as the window opens; empty if there is none.
+std::string find_notice(const SceneDescription& scene, const WindowDevices& devices) {
+    if (scene.hands.size() <= 2) return devices.notice();
+    return devices.notice() + (devices.notice().empty() ? "" : "\n") +
+           translated(
+               "This scene has more than two hands; those after the second stand still in a "
+               "window.");
+}
+
 // The scene as it was played, by the settings that it ended with.
 SceneDescription find_played(const SceneDescription& scene, const WindowReport& report,
                              bool is_emulated) {
@@ -180,9 +188,6 @@ std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
                                      const RunOptions& options) {
     if (!settings.hand) settings.hand = hand_model(HandGrip::Medium);  // a window needs somebody
     if (!options.play) give_to_mouse(settings);
-    if (scene.hands.size() > 2)
-        print_warnings(std::array{std::string(
-            "a window has devices for two hands; the others stand still (--headless moves all)")});
     WindowDevices devices(settings, preferences);
     WindowDevice first, second;
     HandOrders second_orders;
@@ -198,7 +203,8 @@ std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
                             [&](const StageFunction& /*on_stage*/) { open_devices(); })) {
         return NextScreen{};
     }
-    if (!devices.notice().empty()) fmt::print(stderr, "warning: {}\n", devices.notice());
+    const std::string news = find_notice(scene, devices);
+    if (!news.empty()) fmt::print(stderr, "warning: {}\n", news);
     ServeChoice serve = options.serve;
     serve.options.may_pause = false;  // somebody may have a device in the hand
     const std::unique_ptr<FrameServer> server = open_server(serve, world, !options.json);
@@ -237,7 +243,7 @@ std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
          .save = save,
          .save_for_crash = [&](const World& now,
                                const ViewDescription& view) { recovery.save(now, view); },
-         .notice = devices.notice(),
+         .notice = news,
          .server = server.get(),
          .lose_device_at = options.lose_device_at});
     if (report.frames == 0 && report.next) return report.next;  // it was not loaded

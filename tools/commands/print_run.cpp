@@ -150,10 +150,6 @@ void print_rest(const World& world, double rest) {
                hand_force(coupling_of(world, hand_at(world, 0)).laws.force, strongest * 1e-9));
 }
 
-}  // namespace
-
-namespace {
-
 // Prints what each hand holds if there are several.
 void print_hands(const SceneDescription& scene) {
     if (scene.hands.size() < 2) return;
@@ -237,10 +233,6 @@ void print_accuracy(const AccuracyReport& f) {
     for (const std::string& what : not_met) fmt::print("  not met     {}\n", what);
 }
 
-}  // namespace
-
-namespace {
-
 void print_travel(const std::string& title, const HandTravel& travel) {
     const double moved_cm = 100 * travel.handle_m, lost_cm = 100 * travel.lost_m;
     fmt::print("  {} {:.1f} cm of the handle in {} {}; {:.1f} cm lost ({:.1f} %)\n", title,
@@ -255,9 +247,9 @@ void print_travel(const std::string& title, const HandTravel& travel) {
     }
 }
 
-}  // namespace
-
-namespace {
+void print_clipping(const Summary& s) {
+    fmt::print("  clipping    {:.1f} % of the time\n", 100 * s.clamped_share);
+}
 
 std::string describe_hand(const SceneDescription& scene, std::size_t slot) {
     const HandDescription& hand = scene.hands.at(slot);
@@ -272,9 +264,11 @@ void print_other_hand(const SceneDescription& scene, std::size_t slot, const Sum
     fmt::print("  hand {}      {}\n", slot + 1, describe_hand(scene, slot));
     fmt::print("  felt        at most {:.3f} N; net work {:+.4f} J on the hand\n", s.largest_felt_N,
                s.net_work_J);
-    if (!scene.engine) fmt::print("  molecule    at the end {:.3f} Å\n", s.last_angstrom);
+    if (!scene.engine && s.last_angstrom != 0)
+        fmt::print("  molecule    at the end {:.3f} Å\n", s.last_angstrom);
     if (s.accuracy) print_accuracy(*s.accuracy);
     print_travel("travel     ", s.travel);
+    print_clipping(s);
 }
 
 }  // namespace
@@ -301,7 +295,7 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
     }
     fmt::print("  net work    {:+.4f} J on the hand\n", s.net_work_J);
     // A spring to an engine's atoms is measured from no other molecule.
-    if (!scene.engine) {
+    if (!scene.engine && s.closest_angstrom != 0) {
         fmt::print("  molecule    closest distance {:.3f} Å, at the end {:.3f} Å\n",
                    s.closest_angstrom, s.last_angstrom);
     }
@@ -337,9 +331,9 @@ void print_summary(const SceneDescription& scene, const Summary& s) {
     }
     if (s.relaxation) print_relaxation(*s.relaxation);
     print_travel("travel     ", s.travel);
+    print_clipping(s);
     for (std::size_t i = 0; i < s.other_hands.size(); ++i)
         print_other_hand(scene, i + 1, s.other_hands[i]);
-    fmt::print("  clipping    {:.1f} % of the time\n", 100 * s.clamped_share);
     fmt::print("  step        {:.2f} µs median, {:.2f} µs p99 of {} steps\n", s.step_median_us,
                s.step_p99_us, s.steps);
 }

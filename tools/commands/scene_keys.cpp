@@ -1,5 +1,6 @@
 #include "tools/commands/scene_keys.h"
 
+#include "core/hands.h"
 #include "core/load_error.h"
 #include "core/text.h"
 #include "scene/fields.h"
@@ -20,8 +21,10 @@ bool is_asked_for(std::string_view key, std::string_view asked) {
 
 // The key under which a key of one hand is listed: "grab.atom" for "hand[2].grab.atom".
 std::string listed_key(std::string asked) {
-    if (const std::size_t end = asked.find(']'); asked.starts_with("hand[") && end != asked.npos)
-        asked.replace(0, end + 1, "hand");
+    for (std::size_t number = 1; number <= most_hands; ++number) {
+        const std::string own_key = fmt::format("hand[{}]", number);
+        if (asked.starts_with(own_key)) asked.replace(0, own_key.size(), "hand");
+    }
     constexpr std::string_view old_second = "second.";
     if (asked.starts_with("second.hand"))
         asked.erase(0, old_second.size());

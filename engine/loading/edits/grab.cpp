@@ -69,10 +69,12 @@ void GrabEdit::apply(World& world, std::size_t slot) const {
         const bool is_whole = part.atoms.empty();
         const Entity other = other_holder(changed, hand, part.molecule);
         if (is_whole && other != Entity{} && holds_whole(changed, other)) {
+            const AtomName& atom = changed.resource<AtomTable>()
+                                       .names[changed.find<Molecule>(part.molecule)->atoms.first];
             refuse(
-                fmt::format("another hand holds '{}' as a whole; expected a residue or an "
-                            "atom of it, as \"{}:25 CA\"",
-                            what, what));
+                fmt::format("another hand holds '{0}' as a whole; expected a residue or an atom of "
+                            "it (\"{0}:{1}\", \"{0}:{1} {2}\")",
+                            what, atom.number, atom.atom));
         }
         Grip grip = build_grip(changed, hand, part);
         Mobility& mobility = *changed.write<Mobility>(part.molecule);

@@ -1,5 +1,4 @@
 #include "loading/edit.h"
-#include "loading/edits/changes.h"
 #include "loading/load.h"
 #include "scene/edits.h"
 #include "simulation/resources.h"

@@ -16,13 +16,13 @@
 namespace palpa {
 namespace {
 
-// Farther from one frame to the next goes only what is moved into another image.
+// The farthest way between two frames; atoms that move farther have gone into another image.
 constexpr double farthest_move = 8;  // Å
-// Farther out nothing is held.
+// The farthest place at which atoms are held.
 constexpr double farthest_place = 1e5;  // Å
 
-// Without a stretch of its spring; the servo puts the hand's end there.
-void begin_new_grip(World& world, Entity hand, EngineHold& hold) {
+// Starts the hold again without a stretch of its spring; the servo puts the hand's end there.
+void restart_hold(World& world, Entity hand, EngineHold& hold) {
     Grip& grip = *world.write<Grip>(hand);
     hold.smoothed = hold.middle;
     hold.is_live = true;
@@ -40,7 +40,7 @@ void follow_atoms(World& world, const RemoteEngine& engine, Entity hand, bool is
     if (!is_live || middle.cwiseAbs().maxCoeff() > farthest_place) {
         hold.is_live = false;
     } else if (!hold.is_live || has_jumped) {
-        begin_new_grip(world, hand, hold);
+        restart_hold(world, hand, hold);
     } else {
         const double constant_s = 1e-3 * engine.settings.smoothing_ms;
         const double share =
