@@ -36,7 +36,7 @@ Structure read_whole_structure(const std::filesystem::path& path) {
     return structure;
 }
 
-// In the order of their first atoms.
+// Lists segments in the order of their first atoms.
 std::vector<std::string> list_segments(const std::vector<AtomName>& names) {
     std::vector<std::string> segments;
     for (const AtomName& name : names) {
@@ -47,7 +47,7 @@ std::vector<std::string> list_segments(const std::vector<AtomName>& names) {
     return segments;
 }
 
-// In quotes; of very many the first ones.
+// Quotes the names; only the first ones of very many.
 std::string quote(std::vector<std::string> segments) {
     constexpr std::size_t most = 20;
     const std::size_t count = segments.size();

@@ -228,7 +228,7 @@ void warn_of_resolution(const SceneDescription& scene, const World& world, std::
     }
 }
 
-// That a hand feels a spring too stiff for it, held or let go.
+// Warns of a spring that is too stiff for the hand, whether it holds the handle or not.
 void warn_of_stiffness(const SceneDescription& scene, const World& world, const HandScript& script,
                        std::size_t slot, const StageFunction& on_stage,
                        std::vector<std::string>& warnings) {
@@ -254,7 +254,7 @@ void warn_of_stiffness(const SceneDescription& scene, const World& world, const 
     }
 }
 
-// That it wants more than the coupling lets it, or than the run has time for.
+// Warns of a stroke beyond what the coupling allows, or longer than the run.
 void warn_of_stroke(const SceneDescription& scene, const World& world, const HandScript& script,
                     std::size_t slot, std::vector<std::string>& warnings) {
     const HandTables tables = list_hands(scene).at(slot);
@@ -357,7 +357,7 @@ void warn_of_outcome(Summary& summary) {
     }
 }
 
-// What was active, step by step.
+// A log of the active degrees of freedom, step by step.
 class ActivityLog {
 public:
     void add(const RelaxStepReport& relaxed, double took_us,
@@ -433,7 +433,7 @@ private:
     std::array<std::uint64_t, 1200> counts_{};  // up to 1e7 pN
 };
 
-// What the model of a flexible scene leaves out.
+// Lists what the model of a flexible scene leaves out.
 std::vector<std::string> list_neglected(const SceneDescription& scene, const World& world) {
     std::vector<std::string> neglected;
     if (!has_mobile(world)) return neglected;
@@ -453,7 +453,7 @@ std::vector<std::string> list_neglected(const SceneDescription& scene, const Wor
     return neglected;
 }
 
-// What a run gathers beside its recording.
+// A log of what a run gathers beside its recording.
 class RunLog {
 public:
     RunLog(const SceneDescription& scene, const World& world, std::span<const LockstepHand> hands)

@@ -41,7 +41,7 @@ struct StartPlaces {
     std::shared_ptr<const std::vector<Vec3>> atoms;
 };
 
-// Where its atoms and bonds are from. What is bonded is read or generated when something mobile
+// The origin of its atoms and bonds. The bonds are read or generated when something mobile
 // asks for it.
 struct Source {
     std::shared_ptr<const Structure> structure;

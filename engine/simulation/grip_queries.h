@@ -1,4 +1,4 @@
-// What hands hold and its surroundings: queries, and the functions that take, shape and move it.
+// Finds what hands hold and what is around it; takes, shapes and moves it.
 #pragma once
 #include "ecs/world.h"
 #include "field/pair_field.h"
@@ -61,8 +61,8 @@ Vec3 middle_of(const World& world, const AtomsOf& atoms);
 // "25" ("27A" with its insertion code), or its 17th atom, "#17". Empty if there is none.
 std::vector<std::uint32_t> atoms_called(const World& world, Entity molecule, std::string_view name);
 
-// The rotation of a molecule about its reference atom since it was loaded; of one that no hand
-// holds as a whole outside of the mechanics.
+// The rotation of a molecule about its reference atom since it was loaded. A molecule that a hand
+// holds as a whole outside of the mechanics has it in the pose of the grip instead.
 Quat orientation_of(const World& world, Entity molecule);
 
 // Makes a molecule rigid at its present position, which is turned by `orientation` from the shape

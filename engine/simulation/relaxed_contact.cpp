@@ -58,7 +58,7 @@ Mat6 scaled(const Mat6& matrix, const Vec6& scale) noexcept {
     return scale.asDiagonal() * matrix * scale.asDiagonal();
 }
 
-// Of one hand, N/m, of what it may do.
+// The stiffness that one hand feels in the directions in which it may move, N/m.
 Mat6 stiffness_of(const Eigen::MatrixXd& all, const HandColumns& columns, const Mat3& free) {
     const Eigen::Index count = columns.count();
     Mat6 own = Mat6::Zero();
@@ -130,7 +130,7 @@ std::optional<FollowingAtoms> find_following(const World& world, const SecondOrd
                                              std::span<const std::uint32_t> environment) {
     const std::optional<HandColumns> columns = find_columns(second, hand);
     if (!columns || columns->turns) return {};
-    // What the model does not have is fixed.
+    // Skips atoms that the model does not have: they are fixed.
     const auto responses = [&](std::span<const std::uint32_t> atoms) {
         std::vector<std::uint32_t> known;
         std::vector<std::size_t> places;

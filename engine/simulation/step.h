@@ -11,7 +11,7 @@ namespace palpa {
 // force says so, and the servo stops.
 const StepReport& step_world(World& world, const StepInput& input) noexcept;
 
-// With a pose for the first hand; other hands stand still.
+// Takes a pose for the first hand; other hands stand still.
 const StepReport& step_world(World& world, const HandPose& hand, const ContactModel& felt) noexcept;
 
 }  // namespace palpa

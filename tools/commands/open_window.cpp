@@ -45,7 +45,7 @@ SoundChoice build_sound_choice(const RunOptions& options, PreferencesFile& prefe
             }};
 }
 
-// What cannot be remembered keeps nobody from working.
+// Remembers the scene as opened; a failure keeps nobody from working.
 void remember_scene(const fs::path& scene, PreferencesFile& preferences) {
     std::error_code error;
     Preferences chosen = preferences.now();

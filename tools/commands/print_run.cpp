@@ -25,7 +25,7 @@ namespace {
 
 constexpr double force_nN = units::newton_per_kcal_per_mol_angstrom * 1e9;  // of one of ours
 
-// Of ways to relax that do not bring all surroundings to rest in a step.
+// A note on methods that do not bring all surroundings to rest in a step.
 constexpr const char* unrelaxed_note =
     "incomplete in each step: the force can be several times that of relaxed surroundings;\n       "
     "       statics.method = \"second-order\" relaxes them completely";
@@ -55,7 +55,7 @@ void print_relaxation(const RelaxationSummary& r) {
     }
 }
 
-// What moves by itself, and how it came to rest.
+// Prints what moves by itself, and how it came to rest.
 void print_mobile(const World& world, const JointRelaxReport& r) {
     const StartReport& report = world.resource<StartReport>();
     const Eigen::Index coordinates = model_of(world).coordinates;
@@ -118,7 +118,7 @@ void print_cap(const SceneDescription& scene, const World& world) {
         cap_with(MouseHandle(mouse).spec()));
 }
 
-// Where it began, of one that was relaxed.
+// Prints where a relaxed molecule begins.
 void print_relaxed(const World& world, const RelaxReport& r) {
     const ContactModel start = contact_at(world, 0).model;
     fmt::print(
@@ -209,7 +209,7 @@ void print_line(const SceneDescription& scene, const World& world, ProgressLine&
 
 namespace {
 
-// What had to be felt, and which of these requirements were not met.
+// Prints what had to be felt, and which of these requirements were not met.
 void print_accuracy(const AccuracyReport& f) {
     if (const auto range = f.range_pN) {
         fmt::print("  range       {:.6g} to {:.6g} pN, felt as {:.3f} to {:.3f} N\n", (*range)[0],

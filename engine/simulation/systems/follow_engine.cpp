@@ -77,7 +77,7 @@ std::vector<AtomForce> list_forces(const World& world, const RemoteEngine& engin
     return forces;
 }
 
-// Where the engine cannot have them the hand feels nothing either.
+// Sends the forces; if the engine cannot have them, the hand feels nothing either.
 void send_forces(World& world, RemoteEngine& engine) {
     std::vector<std::int32_t> atoms;
     std::vector<Vec3> forces;

@@ -76,7 +76,7 @@ std::vector<std::uint32_t> list_environment(const World& world, Entity hand,
     return atoms;
 }
 
-// Those nearest to what is held, rising.
+// The atoms nearest to what is held, in ascending order.
 std::vector<std::uint32_t> find_nearest(const World& world, Entity hand, std::size_t count) {
     const std::span<const Vec3> own = held_points(world, hand).positions;
     const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
@@ -188,7 +188,7 @@ LocalField build_local_field(const World& world, Entity hand) {
     return field;
 }
 
-// What pulls at the hand, in engine units.
+// The pull at the hand, in engine units.
 struct Pull {
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
     Mat3 stiffness = Mat3::Zero();
@@ -221,7 +221,7 @@ Pull find_pull(const World& world, Entity hand, const LocalField& field) {
     const Vec3 centre = field.centre;
     Pull pull;
     if (grip_of(world, hand).base >= 0) {
-        // As the mechanics have it, with their cutoff.
+        // Takes the pull from the mechanics, with their cutoff.
         const Vec6 wrench = find_pull_on_held(world, hand);
         pull.force = wrench.tail<3>();
         pull.torque = wrench.head<3>() - centre.cross(pull.force);
@@ -277,7 +277,7 @@ std::optional<double> find_confirmed(const Vec3& came, const Vec3& foretold,
     return std::clamp(came.dot(foretold) / norm2, 0.0, 1.0);
 }
 
-// What other hands hold, where a field has it, by slot.
+// The molecules of other hands that a field has, by slot.
 std::vector<std::optional<LiveMolecule>> list_held(const LocalField& field) {
     std::vector<std::optional<LiveMolecule>> held;
     for (const HeldField& other : field.held) {
