@@ -2,6 +2,7 @@
 #include "tools/commands/program.h"
 #include "tools/commands/scene_keys.h"
 #include "tools/commands/start.h"
+#include "tools/commands/window_actions.h"
 
 namespace {
 
@@ -27,6 +28,10 @@ std::optional<int> run_without_command(const std::vector<std::string>& arguments
     if (arguments.empty()) return palpa::start_command();
     if (palpa::is_file_to_open(arguments[0])) return palpa::open_command(arguments);
     if (arguments[0] == "help") {  // of a command it is --help by now
+        if (arguments.size() == 2 && arguments[1] == "actions") {
+            palpa::print_actions();
+            return 0;
+        }
         if (palpa::print_scene_keys({arguments.begin() + 1, arguments.end()})) return 0;
     }
     return std::nullopt;
@@ -39,7 +44,8 @@ constexpr const char* usage =
 
 constexpr const char* footer =
     "palpa help COMMAND explains it with examples; palpa help KEY explains a key of scene files,\n"
-    "palpa help keys all of them. palpa-lab, which tools/build makes, measures speed, errors and\n"
+    "palpa help keys all of them, palpa help actions what can be done in a window. palpa-lab, "
+    "which tools/build makes, measures speed, errors and\n"
     "stability. Exit codes: 0 done, 1 a check failed or a command was refused, 2 wrong input or\n"
     "something is missing, 3 internal error, 4 no answer from an engine, 128+N ended by signal N.";
 

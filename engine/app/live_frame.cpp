@@ -14,10 +14,11 @@
 namespace palpa {
 namespace {
 
-LiveHand show_hand(const World& world, Entity hand, const AtomDirectory& atoms) {
+LiveHand show_hand(const World& world, Entity hand, const AtomDirectory& atoms,
+                   const LiveSettings& settings) {
     const bool holds = world.find<Grip>(hand) != nullptr;
     return {held_range(world, hand), holds ? held_place(world, hand) : Vec3(Vec3::Zero()),
-            held_address(world, hand, atoms), contact_of(world, hand).sent.model};
+            held_address(world, hand, atoms), contact_of(world, hand).sent.model, settings};
 }
 
 // Layers, labels and what is hidden that cannot be evaluated in this world.
@@ -50,6 +51,7 @@ LiveFrameBuilder::LiveFrameBuilder(const SceneDescription& scene, const LiveSimu
     : view_(view),
       edition_(simulation.edition()),
       atoms_(list_atoms(simulation.world())),
+      objects_(list_objects(simulation.world())),
       framed_(framed_atoms(scene.view, simulation.world())) {
     builder_.follow(simulation.world(), view_.marks);
 }
@@ -59,15 +61,17 @@ LiveFrame LiveFrameBuilder::build(const LiveSimulation& simulation) {
     if (edition_ != simulation.edition()) {
         edition_ = simulation.edition();
         atoms_ = list_atoms(world);
+        objects_ = list_objects(world);
         edits_ = std::make_shared<const std::vector<EditDescription>>(simulation.list_edits());
     }
-    LiveFrame frame{{}, {}, atoms_, {}, framed_, {}, {}, simulation.readout(), edits_};
+    LiveFrame frame{{}, {}, atoms_, {}, framed_, {}, {}, simulation.readout(), edits_, {}};
     const std::vector<Vec3>& positions = world.resource<AtomTable>().positions;
     frame.places.resize(positions.size());
     std::ranges::transform(positions, frame.places.begin(), as_float);
     std::vector<ContactModel> contacts;
     for (const Entity hand : find_hands(world)) {
-        frame.hands.push_back(show_hand(world, hand, *atoms_));
+        frame.hands.push_back(
+            show_hand(world, hand, *atoms_, settings_of(simulation.scene(), frame.hands.size())));
         contacts.push_back(frame.hands.back().contact);
     }
     try {
@@ -86,6 +90,8 @@ LiveFrame LiveFrameBuilder::build(const LiveSimulation& simulation) {
         frame.readout.work_budget = accuracy->work_budget();
     }
     frame.readout.playback = find_playback(world);
+    update_values(world, objects_);
+    frame.objects = objects_;
     return frame;
 }
 

@@ -1,5 +1,6 @@
 // What a window shows of a running session, all of one moment between two steps.
 #pragma once
+#include "app/scene_objects.h"
 #include "math/vec.h"
 #include "render/frame_scene.h"
 #include "scene/description.h"
@@ -17,10 +18,11 @@
 namespace palpa {
 
 struct LiveHand {
-    AtomRange held;                        // atoms in hand, as they are picked; none: it is empty
+    AtomRange held{};                      // atoms in hand, as they are picked; none: it is empty
     Vec3 grabbed_angstrom = Vec3::Zero();  // the reference atom in hand, in the world
-    std::string held_address;              // as an edit takes it; empty: nothing is held
-    ContactModel contact;
+    std::string held_address{};            // as an edit takes it; empty: nothing is held
+    ContactModel contact{};
+    LiveSettings settings{};
 };
 
 struct LiveFrame {
@@ -34,6 +36,7 @@ struct LiveFrame {
     Readout readout;                             // its contact is the first hand's
     // What a person made of the world and did not undo.
     std::shared_ptr<const std::vector<EditDescription>> edits{};
+    SceneObjects objects{};  // the entities of the scene
 };
 
 // Of one simulation, by the thread that plays it.
@@ -51,6 +54,7 @@ private:
     FrameBuilder builder_;
     std::uint64_t edition_;
     std::shared_ptr<const AtomDirectory> atoms_;
+    SceneObjects objects_;
     std::shared_ptr<const std::vector<EditDescription>> edits_ =
         std::make_shared<std::vector<EditDescription>>();
     AtomRange framed_;

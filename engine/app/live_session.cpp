@@ -2,12 +2,9 @@
 
 #include "core/files.h"
 #include "core/load_error.h"
-#include "platform/thread.h"
 #include "session/run_headless.h"
 #include "simulation/resources.h"
 
-#include <fmt/format.h>
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -21,8 +18,6 @@ namespace palpa {
 namespace {
 
 using Duration = std::chrono::steady_clock::duration;
-
-constexpr std::chrono::microseconds servo_tick{1'000'000 / static_cast<int>(servo_rate_hz)};
 
 // How long after a reset the hand comes to rest before it has hold of the molecule again.
 constexpr std::chrono::milliseconds settle_time{400};
@@ -202,123 +197,7 @@ bool LiveSession::pop_ticks(std::span<ServoTick> ticks) noexcept {
     return true;
 }
 
-bool LiveSession::pop_tick(ServoTick& tick) noexcept {
-    std::array<ServoTick, most_hands> ticks;
-    if (!pop_ticks(std::span(ticks).first(hands()))) return false;
-    tick = ticks[0];
-    return true;
-}
-
 ServoHealth LiveSession::servo_health() const noexcept { return {overruns_, real_time_, locked_}; }
-
-void LiveSession::begin_recording(const std::filesystem::path& folder, bool overwrites,
-                                  const std::optional<TrajectorySettings>& trajectory) {
-    const std::lock_guard lock(recorder_mutex_);
-    if (plays_)
-        throw LoadError({folder.string()},
-                        "cannot be recorded: a trajectory moves the atoms, and a recording does "
-                        "not hold its frames; expected a session without a trajectory");
-    if (recorder_.is_recording())
-        throw LoadError({folder.string()}, "another recording is running; end it first (F9)");
-    record_what_happened();
-    recording_problem_.clear();
-    recorder_.begin(folder, overwrites, trajectory);
-    if (trajectory) trajectory_queue_.begin(trajectory->per_second);
-}
-
-void LiveSession::end_recording() {
-    const std::optional<UnbindingPath> unbinding = find_unbinding();
-    const std::lock_guard lock(recorder_mutex_);
-    trajectory_queue_.end();
-    record_what_happened();
-    recorder_.end(unbinding);
-    if (recording_problem_.empty()) return;
-    throw LoadError({"recording"}, std::exchange(recording_problem_, {}));
-}
-
-void LiveSession::write_statistics(const std::filesystem::path& path, bool overwrites) {
-    const std::lock_guard lock(recorder_mutex_);
-    recorder_.write_statistics(path, overwrites);
-}
-
-std::optional<double> LiveSession::recorded_s() {
-    const std::lock_guard lock(recorder_mutex_);
-    if (!recorder_.is_recording()) return std::nullopt;
-    return recorder_.recorded_s();
-}
-
-std::vector<std::string> LiveSession::take_recording_notes() {
-    const std::lock_guard lock(recorder_mutex_);
-    std::vector<std::string> notes = recorder_.take_notes();
-    if (const std::size_t lost = trajectory_queue_.take_lost(); lost > 0)
-        notes.push_back(fmt::format(
-            "{} frames of the trajectory are missing: the disk was too slow to write them", lost));
-    if (!recorder_.is_recording() && !recording_problem_.empty())
-        notes.push_back(std::exchange(recording_problem_, {}));
-    return notes;
-}
-
-// ---- the servos' thread ------------------------------------------------------------------------
-
-void LiveSession::start_servo() {
-    servo_thread_ = std::thread([this] { run_servo(); });
-}
-
-// The force fades first.
-void LiveSession::stop_servo() {
-    servo_stopping_ = true;
-    servo_thread_.join();
-    servo_stopping_ = false;
-    for (const LiveDevice& device : devices_) device.device->write(Vec3::Zero());
-}
-
-void LiveSession::run_servo() {
-    real_time_ = &clock_ == &machine_clock_ && ask_for_real_time();
-    locked_ = ask_for_locked_memory();
-    const std::size_t count = devices_.size();
-    // An emulated device lives on the servo's ticks, however late they come, and can stand still.
-    const bool is_emulated =
-        std::ranges::all_of(devices_, [](const LiveDevice& d) { return d.orders != nullptr; });
-    std::array<DeviceReading, most_hands> readings;
-    std::array<double, most_hands> stamps{};
-    std::array<LiveTick, most_hands> last{};
-    std::array<ServoTick, most_hands> ticks{};
-    const LiveClock::Moment start = clock_.now();
-    LiveClock::Moment next = start;
-    // The force fades before the last tick.
-    constexpr int last_ticks = 12;
-    for (int ending = 0; ending < last_ticks;) {
-        servos_.take_orders();
-        const bool is_ending = servo_stopping_;
-        ending += is_ending ? 1 : 0;
-        bool stands_still = servos_.is_paused() && !is_ending;
-        for (std::size_t slot = 0; slot < count; ++slot) {
-            readings[slot] = devices_[slot].device->read();
-            stands_still = stands_still && readings[slot].time_s == stamps[slot];
-            stamps[slot] = readings[slot].time_s;
-        }
-        const std::chrono::duration<double> real_s = clock_.now() - start;
-        if (!stands_still) {
-            servos_.tick(std::span(readings).first(count),
-                         is_emulated ? readings[0].time_s : real_s.count(), is_ending);
-            std::ranges::copy(servos_.ticks(), last.begin());
-            std::ranges::transform(servos_.ticks(), ticks.begin(), &LiveTick::tick);
-            ticks_->push(std::span<const ServoTick>(ticks).first(count));
-            journal_queue_.push(servos_.ticks());
-        }
-        for (std::size_t slot = 0; slot < count; ++slot) {
-            devices_[slot].device->show(last[slot].tick.contact, last[slot].tick.waiting_m);
-            devices_[slot].device->write(last[slot].tick.sent_newton);
-        }
-        next += servo_tick;
-        const LiveClock::Moment now = clock_.now();
-        if (now - next > servo_tick) {
-            overruns_ += static_cast<std::uint64_t>((now - next) / servo_tick);
-            next = now;
-        }
-        clock_.wait_for_tick(next);
-    }
-}
 
 // ---- the simulation's thread -------------------------------------------------------------------
 
@@ -468,44 +347,6 @@ void LiveSession::change_device(const DeviceEvent& change, const LiveDevice& dev
 
 void LiveSession::post_frame_if_wanted() {
     if (frame_wanted_.exchange(false)) frames_.post(frame_builder_.build(simulation_));
-}
-
-// ---- the journal's thread ----------------------------------------------------------------------
-
-void LiveSession::run_recorder() {
-    constexpr std::chrono::milliseconds between{20};
-    for (bool is_last = false; !is_last;) {
-        is_last = recorder_stopping_;
-        {
-            const std::lock_guard lock(recorder_mutex_);
-            record_what_happened();
-            if (is_last && recorder_.is_recording()) {
-                try {
-                    recorder_.end(simulation_.unbinding());  // whose thread has ended
-                } catch (const LoadError& error) {
-                    recording_problem_ = error.what();
-                }
-            }
-        }
-        if (!is_last) std::this_thread::sleep_for(between);
-    }
-}
-
-void LiveSession::record_what_happened() {
-    if (journal_queue_.dropped() > 0) {
-        recorder_.lose();
-        if (recorder_.is_recording() && recording_problem_.empty())
-            recording_problem_ =
-                "servo ticks are missing: the machine was too busy to record them all, so a replay "
-                "will not be exact";
-    }
-    recorder_.note_overruns(overruns_);
-    journal_queue_.hand_to(recorder_);
-    for (const TrajectoryShot& shot : trajectory_queue_.take()) recorder_.add(shot);
-    if (std::string failure = recorder_.take_failure(); !failure.empty()) {
-        trajectory_queue_.end();
-        recording_problem_ = std::move(failure);
-    }
 }
 
 }  // namespace palpa

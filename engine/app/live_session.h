@@ -69,7 +69,6 @@ public:
     bool read_frame(LiveFrame& frame) override;
     World copy_world() override;
     bool pop_ticks(std::span<ServoTick> ticks) noexcept override;
-    bool pop_tick(ServoTick& tick) noexcept;  // of the first hand
     std::size_t hands() const noexcept { return devices_.size(); }
 
     ServoHealth servo_health() const noexcept override;

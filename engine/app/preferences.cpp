@@ -30,8 +30,23 @@ bool read_text(const toml::node& value, Preferences& preferences) {
     return (preferences.*Field = value.value<std::string>()).has_value();
 }
 
-bool read_sound(const toml::node& value, Preferences& preferences) {
-    return (preferences.sound = value.value_exact<bool>()).has_value();
+bool read_window_size(const toml::node& value, Preferences& preferences) {
+    const toml::array* const sides = value.as_array();
+    if (!sides || sides->size() != 2) return false;
+    std::array<int, 2> size{};
+    for (std::size_t i = 0; i < 2; ++i) {
+        constexpr std::int64_t least = 200, most = 20'000;
+        const std::optional<std::int64_t> side = sides->get(i)->value_exact<std::int64_t>();
+        if (!side || *side < least || *side > most) return false;
+        size[i] = static_cast<int>(*side);
+    }
+    preferences.window_size = size;
+    return true;
+}
+
+template <auto Field>
+bool read_flag(const toml::node& value, Preferences& preferences) {
+    return (preferences.*Field = value.value_exact<bool>()).has_value();
 }
 
 bool read_hand_explained(const toml::node& value, Preferences& preferences) {
@@ -45,36 +60,53 @@ bool read_text_scale(const toml::node& value, Preferences& preferences) {
     return scale && *scale >= 0.5 && *scale <= 4;
 }
 
+std::optional<std::vector<std::string>> read_texts(const toml::node& value) {
+    const toml::array* const several = value.as_array();
+    if (!several) return {};
+    std::vector<std::string> texts;
+    for (const toml::node& each : *several) {
+        const auto text = each.value<std::string>();
+        if (!text) return {};
+        texts.push_back(*text);
+    }
+    return texts;
+}
+
+bool read_panels(const toml::node& value, Preferences& preferences) {
+    const std::optional<std::vector<std::string>> panels = read_texts(value);
+    preferences.panels = panels.value_or(std::vector<std::string>());
+    return panels.has_value();
+}
+
 // One scene, as versions before had it, or several.
 bool read_recent(const toml::node& value, Preferences& preferences) {
     if (const auto one = value.value<std::string>()) {
         preferences.recent = add_recent(std::move(preferences.recent), *one);
         return true;
     }
-    const toml::array* const several = value.as_array();
-    if (!several) return false;
-    std::vector<std::string> recent;
-    for (const toml::node& each : *several) {
-        const auto file = each.value<std::string>();
-        if (!file) return false;
-        if (recent.size() < most_recent) recent.push_back(*file);
-    }
-    preferences.recent = std::move(recent);
+    std::optional<std::vector<std::string>> recent = read_texts(value);
+    if (!recent) return false;
+    if (recent->size() > most_recent) recent->resize(most_recent);
+    preferences.recent = std::move(*recent);
     return true;
 }
 
-constexpr std::array<Preference, 7> known_keys{{
-    {"device", read_text<&Preferences::device>,
-     "device is not text; expected a device name in quotes, such as \"mouse\""},
-    {"sound", read_sound, "sound is not true or false; expected one of them"},
-    {"scene", read_recent, "scene is not text; expected the file or folder of a scene, in quotes"},
-    {"recent", read_recent, "recent is not a list of texts; expected scene files, [\"...\"]"},
-    {"hand_explained", read_hand_explained,
-     "hand_explained is not true or false; expected one of them"},
-    {"text_scale", read_text_scale, "text_scale is not a number from 0.5 to 4 (1: the usual size)"},
-    {"language", read_text<&Preferences::language>,
-     "language is not text; expected a language code in quotes, such as \"de\" or \"en\""},
-}};
+constexpr std::array<Preference, 10> known_keys{
+    {{"device", read_text<&Preferences::device>,
+      "device is not text; expected a device name in quotes, such as \"mouse\""},
+     {"sound", read_flag<&Preferences::sound>, "sound is not true or false; expected one of them"},
+     {"scene", read_recent, "scene is not text; expected the file or folder of a scene, in quotes"},
+     {"recent", read_recent, "recent is not a list of texts; expected scene files, [\"...\"]"},
+     {"hand_explained", read_hand_explained,
+      "hand_explained is not true or false; expected one of them"},
+     {"text_scale", read_text_scale,
+      "text_scale is not a number from 0.5 to 4 (1: the usual size)"},
+     {"language", read_text<&Preferences::language>,
+      "language is not text; expected a language code in quotes, such as \"de\" or \"en\""},
+     {"window_size", read_window_size, "window_size is not two whole numbers from 200 to 20000"},
+     {"dark_theme", read_flag<&Preferences::dark_theme>,
+      "dark_theme is not true or false; expected one of them"},
+     {"panels", read_panels, "panels is not a list of texts, such as [\"left 240\"]"}}};
 
 TextPlace place_in(const std::string& file, const toml::source_region& source) {
     return {file, source.begin.line, source.begin.column};
@@ -116,12 +148,20 @@ Preferences parse_preferences(std::string_view text, const std::string& file) {
 std::string format_preferences(const Preferences& preferences) {
     toml::table table;
     if (preferences.device) table.insert("device", *preferences.device);
-    if (preferences.sound) table.insert("sound", *preferences.sound);
-    if (!preferences.recent.empty()) {
-        toml::array recent;
-        for (const std::string& file : preferences.recent) recent.push_back(file);
-        table.insert("recent", std::move(recent));
+    if (preferences.window_size) {
+        const auto [width, height] = *preferences.window_size;
+        table.insert("window_size", toml::array{width, height});
     }
+    if (preferences.dark_theme) table.insert("dark_theme", *preferences.dark_theme);
+    if (preferences.sound) table.insert("sound", *preferences.sound);
+    const auto insert_texts = [&](std::string_view key, const std::vector<std::string>& texts) {
+        if (texts.empty()) return;
+        toml::array array;
+        for (const std::string& text : texts) array.push_back(text);
+        table.insert(key, std::move(array));
+    };
+    insert_texts("recent", preferences.recent);
+    insert_texts("panels", preferences.panels);
     if (preferences.hand_explained) table.insert("hand_explained", true);
     if (preferences.text_scale) table.insert("text_scale", *preferences.text_scale);
     if (preferences.language) table.insert("language", *preferences.language);
@@ -143,6 +183,40 @@ std::optional<fs::path> find_prepared_folder() {
     if (const auto folder = find_folder("APPDATA")) return *folder / name;
     if (const auto folder = find_folder("HOME")) return *folder / ".local" / "share" / name;
     return std::nullopt;
+}
+
+namespace {
+
+// XDG_DOCUMENTS_DIR="$HOME/Texts" of user-dirs.dirs.
+std::optional<fs::path> find_documents_of_desktop(const std::optional<fs::path>& home) {
+    if (const auto folder = find_folder("XDG_DOCUMENTS_DIR")) return folder;
+    std::optional<fs::path> config = find_folder("XDG_CONFIG_HOME");
+    if (!config && home) config = *home / ".config";
+    std::error_code error;
+    if (!config || !fs::exists(*config / "user-dirs.dirs", error)) return {};
+    try {
+        const std::string text = read_text_file(*config / "user-dirs.dirs");
+        for (std::string_view line : split_lines(text)) {
+            constexpr std::string_view key = "XDG_DOCUMENTS_DIR=\"", at_home = "$HOME/";
+            if (!line.starts_with(key) || !line.ends_with('"')) continue;
+            line = line.substr(key.size(), line.size() - key.size() - 1);
+            if (home && line.starts_with(at_home)) return *home / line.substr(at_home.size());
+            if (fs::path(line).is_absolute()) return fs::path(line);
+        }
+    } catch (const LoadError&) {  // then it says nothing
+    }
+    return {};
+}
+
+}  // namespace
+
+fs::path find_files_folder() {
+    std::optional<fs::path> home = find_folder("HOME");
+    if (!home) home = find_folder("USERPROFILE");
+    std::error_code error;
+    if (const auto folder = find_documents_of_desktop(home)) return *folder / "Palpa";
+    if (home && fs::is_directory(*home / "Documents", error)) return *home / "Documents" / "Palpa";
+    return home ? *home / "Palpa" : fs::path("Palpa");
 }
 
 std::optional<fs::path> find_preferences_file() {
@@ -171,13 +245,7 @@ void PreferencesFile::keep(const Preferences& preferences) {
         throw LoadError(place,
                         "preferences cannot be saved: there is no settings folder (set HOME or "
                         "XDG_CONFIG_HOME)");
-    std::error_code error;
-    fs::create_directories(file_->parent_path(), error);
-    if (error) {
-        throw LoadError(place,
-                        fmt::format("preferences cannot be saved: the folder {} cannot be made: {}",
-                                    file_->parent_path().string(), error.message()));
-    }
+    make_folder(file_->parent_path());
     write_text_file(*file_, format_preferences(preferences), Existing::Replace);
     now_ = preferences;
 }

@@ -1,5 +1,6 @@
 // The user's preferences, in a TOML file.
 #pragma once
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -14,6 +15,9 @@ struct Preferences {
     std::vector<std::string> recent{};    // scenes opened before, absolute paths, newest first
     bool hand_explained = false;          // the signs of the hand were explained in the window
     std::optional<double> text_scale{};   // scale of the window's text, relative to the display's
+    std::optional<std::array<int, 2>> window_size{};  // in the display's own units
+    std::optional<bool> dark_theme{};                 // dark or light panels and background
+    std::vector<std::string> panels{};                // as the window left them (app/panels.h)
     std::optional<std::string>
         language{};  // language of the window, "de"; unset: from the environment
 
@@ -36,6 +40,11 @@ std::optional<std::filesystem::path> find_preferences_file();
 // Folder for prepared structures: palpa/scenes below XDG_DATA_HOME, ~/.local/share, or APPDATA on
 // Windows; empty if none is set.
 std::optional<std::filesystem::path> find_prepared_folder();
+
+// Folder for what the window saves: Palpa in the user's documents, which are XDG_DOCUMENTS_DIR,
+// what user-dirs.dirs says, or Documents at home if that is there; without these, home, or the
+// current folder.
+std::filesystem::path find_files_folder();
 
 // The file and its content. If it cannot be read, `problem` says why; it then counts as empty and
 // is never overwritten, so that its author can correct it.

@@ -196,12 +196,8 @@ void ReplaySession::post_frame() {
     };
     frame.readout.paused = is_paused_;
     frame.readout.replay =
-        ReplayState{seconds(player_->next_tick()),
-                    seconds(journal_.ticks.size()),
-                    speed_,
-                    is_paused_,
-                    describe_verdict(),
-                    {coupling_of(simulation.scene(), 0), simulation.scene().period_ms}};
+        ReplayState{seconds(player_->next_tick()), seconds(journal_.ticks.size()), speed_,
+                    is_paused_, describe_verdict()};
     frames_.post(frame);
 }
 

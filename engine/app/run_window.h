@@ -1,5 +1,6 @@
 // The sandbox in a window: draws a running scene, and lets a person take part.
 #pragma once
+#include "app/actions.h"
 #include "core/files.h"
 #include "ecs/world.h"
 #include "experiments/study_course.h"
@@ -10,7 +11,7 @@
 #include "session/commands.h"
 #include "session/statistics.h"
 #include "session/trajectory_recorder.h"
-#include "ui/overlay.h"
+#include "view/build_frame.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -24,6 +25,14 @@ namespace palpa {
 
 class FrameServer;
 class WindowShell;
+
+// A device that can be chosen.
+struct DeviceOffer {
+    std::string name, summary;  // name for --device; short description
+    bool is_there = true;       // as far as it can be detected
+    bool is_stand_in =
+        false;  // a substitute for hardware: used only on request, and never remembered
+};
 
 // The device of a hand in the window.
 struct WindowDevice {
@@ -58,7 +67,7 @@ struct SoundChoice {
 
 struct WindowOptions {
     ViewSettings view{};
-    std::filesystem::path screenshots{"."};  // folder
+    std::filesystem::path files_folder{"."};  // of what is saved; made when it is needed
     std::optional<std::filesystem::path>
         last_shot{};  // file of a screenshot after `last_shot_s`; then the window closes
     Existing last_shot_existing = Existing::Refuse;
@@ -79,7 +88,10 @@ struct WindowOptions {
     // Whether the signs of the hand (ring, thread, bar) were explained before; saves that they
     // were.
     bool is_hand_explained = false;
-    std::function<void()> remember_hand_explained{};
+    std::function<void(bool)> remember_hand_explained{};  // throws LoadError
+    // How a person left the panels (list_docks), and what saves that; throws LoadError.
+    std::vector<std::string> panels{};
+    std::function<void(const std::vector<std::string>&)> remember_panels{};
     // Saves the world with this view as a scene, and returns where; throws LoadError. Empty: saving
     // is not possible.
     std::function<std::string(const World&, const ViewDescription&)> save{};
@@ -91,6 +103,8 @@ struct WindowOptions {
     std::uint64_t lose_device_at = 0;  // frame at which the graphics device is given up, for tests
     StudyCourse* study = nullptr;      // shows only this study: no overlays, one key
     std::function<void()> on_trial{};  // called after each trial
+    // Called for each action that a person does. Empty: never.
+    std::function<void(const Action&, By)> note_action{};
     // Called for each tick of the first hand; the window closes when it returns true. Empty: never.
     std::function<bool(const ServoTick&)> is_over{};
 };
@@ -102,7 +116,7 @@ struct NextScreen {
 
 struct WindowReport {
     Summary summary;
-    LiveSettings settings;  // settings at the end
+    std::vector<LiveSettings> settings;  // of each hand, at the end
     std::uint64_t frames = 0;
     double median_frame_ms = 0;
     double render_scale = 1;  // render scale at the end

@@ -1,9 +1,10 @@
 #include "app/start_screen.h"
 
+#include "app/scene_cards.h"
 #include "core/load_error.h"
-#include "core/text.h"
 #include "core/translate.h"
 #include "render/picture_sheet.h"
+#include "ui/colours.h"
 #include "ui/file_browser.h"
 #include "ui/language_list.h"
 #include "ui/layout.h"
@@ -15,7 +16,6 @@
 #include <cmath>
 #include <memory>
 #include <system_error>
-#include <tuple>
 #include <utility>
 
 namespace palpa {
@@ -25,12 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr float card_width = 200, picture_height = 125, card_text_height = 92;
 constexpr double frames_per_s = 60;
-constexpr ImU32 chosen_edge = IM_COL32(40, 90, 170, 255), card_edge = IM_COL32(150, 160, 175, 255);
-const ImVec4 problem_colour{0.70F, 0.10F, 0.05F, 1};
-
-fs::path picture_of(const SceneEntry& scene) {
-    return fs::path(scene.file).replace_extension(".png");
-}
+constexpr ImU32 chosen_edge = IM_COL32(60, 120, 210, 255), card_edge = IM_COL32(150, 160, 175, 255);
 
 // What a scene's level may be.
 [[maybe_unused]] constexpr std::array levels{
@@ -81,9 +76,8 @@ private:
 
     WindowShell& shell_;
     const StartOptions& options_;
-    std::vector<SceneEntry> cards_;
-    std::vector<std::optional<std::size_t>> picture_numbers_;  // of the cards
-    std::vector<Picture> pictures_;
+    const SceneCards scenes_;
+    const std::vector<SceneEntry>& cards_ = scenes_.cards;
     const Graphics* sheet_of_ = nullptr;
     std::unique_ptr<PictureSheet> sheet_;
     std::vector<CardPicture> shown_;
@@ -100,28 +94,11 @@ private:
 };
 
 StartScreen::StartScreen(WindowShell& shell, const StartOptions& options)
-    : shell_(shell), options_(options), device_(options.device), problem_(options.problem) {
-    std::ranges::copy_if(options.scenes, std::back_inserter(cards_), [](const SceneEntry& scene) {
-        return !scene.level.empty() && !scene.is_to_be_made;
-    });
-    // What a beginner opens first stands first, lessons before others, short ones before long ones.
-    const auto rank = [](const SceneEntry& scene) {
-        return std::tuple(std::ranges::find(scene_level_names, scene.level), !scene.has_lesson,
-                          scene.minutes);
-    };
-    std::ranges::stable_sort(cards_, {}, rank);
-    for (const SceneEntry& card : cards_) {
-        picture_numbers_.emplace_back();
-        try {
-            Picture picture = read_png(picture_of(card));
-            if (!pictures_.empty() &&
-                (picture.width != pictures_[0].width || picture.height != pictures_[0].height))
-                continue;
-            picture_numbers_.back() = pictures_.size();
-            pictures_.push_back(std::move(picture));
-        } catch (const LoadError&) {  // a card without one
-        }
-    }
+    : shell_(shell),
+      options_(options),
+      scenes_(list_cards(options.scenes)),
+      device_(options.device),
+      problem_(options.problem) {
     shell.window().set_title("Palpa");
 }
 
@@ -156,7 +133,7 @@ void StartScreen::drop_pictures() {
 void StartScreen::load_pictures() {
     Graphics* const graphics = shell_.graphics();
     if (sheet_ && sheet_of_ == graphics) return;
-    sheet_ = std::make_unique<PictureSheet>(graphics->device, pictures_);
+    sheet_ = std::make_unique<PictureSheet>(graphics->device, scenes_.pictures);
     sheet_of_ = graphics;
 }
 
@@ -194,7 +171,9 @@ void StartScreen::press(const KeyPress& press) {
     if (press.key == Key::O) browse();
     if (press.key == Key::Escape && ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) {
         closes_list_ = true;
-    } else if (press.key == Key::Escape || press.key == Key::Q) {
+    } else if (press.key == Key::Escape) {
+        notice_ = translated("nothing is open; Ctrl+Q quits");
+    } else if (press.key == Key::Q && press.control) {
         is_over_ = true;
     }
 }
@@ -254,7 +233,7 @@ void StartScreen::draw_header() {
                            translated("New here? Press Enter: the first card is a tour of two "
                                       "minutes."));
     if (!problem_.empty()) {
-        ImGui::PushStyleColor(ImGuiCol_Text, problem_colour);
+        ImGui::PushStyleColor(ImGuiCol_Text, colours().wrong);
         ImGui::TextWrapped("%s", problem_.c_str());
         ImGui::PopStyleColor();
     }
@@ -286,12 +265,12 @@ void StartScreen::draw_card(std::size_t number, float width) {
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 clip_from = list.GetClipRectMin(), clip_to = list.GetClipRectMax();
     const VkExtent2D window = shell_.graphics()->swapchain.size();
-    if (picture_numbers_[number]) {
+    if (scenes_.picture_numbers[number]) {
         const auto pixel = [](float place) { return static_cast<int>(std::lround(place)); };
         const PixelBox all{0, 0, static_cast<int>(window.width), static_cast<int>(window.height)};
         const PixelBox clip{pixel(clip_from.x), pixel(clip_from.y), pixel(clip_to.x),
                             pixel(clip_to.y)};
-        shown_.push_back({*picture_numbers_[number],
+        shown_.push_back({*scenes_.picture_numbers[number],
                           {pixel(at.x), pixel(at.y), pixel(end.x), pixel(at.y + high)},
                           common(all, clip)});
     }
@@ -301,7 +280,7 @@ void StartScreen::draw_card(std::size_t number, float width) {
     const bool is_chosen = number == chosen_;
     if (ImGui::IsItemHovered() && mouse_moved_) chosen_ = number;
     if (is_chosen && moved_) ImGui::SetScrollHereY();
-    list.AddRectFilled({at.x, at.y + high}, end, IM_COL32(255, 255, 255, 235));
+    list.AddRectFilled({at.x, at.y + high}, end, colours().ground);
     list.AddRect(at, end, is_chosen ? chosen_edge : card_edge, 0, 0, scaled(is_chosen ? 3 : 1));
     const float pad = scaled(6);
     const ImVec4 inside{at.x + pad, at.y + high, end.x - pad, end.y - pad / 2};
@@ -313,9 +292,9 @@ void StartScreen::draw_card(std::size_t number, float width) {
                      &inside);
         y += font->CalcTextSizeA(height, width, width - 2 * pad, text.c_str()).y;
     };
-    write(scene.title, size, IM_COL32(20, 25, 40, 255));
-    write(translated_effort(scene), small, IM_COL32(50, 95, 160, 255));
-    write(scene.about, small, IM_COL32(70, 75, 85, 255));
+    write(scene.title, size, colours().ink);
+    write(translated_effort(scene), small, colours().task);
+    write(scene.about, small, ImGui::GetColorU32(ImGuiCol_Text, 0.75F));
     ImGui::EndGroup();
     if (ImGui::IsItemHovered())
         tip(fmt::format("{}\n{}", scene.about, scene.file.string()).c_str());
@@ -335,7 +314,7 @@ void StartScreen::draw_side() {
     if (const std::optional<std::string> language = draw_language_list(languages_))
         notice_ = shell_.change_language(*language);
     ImGui::Separator();
-    if (ImGui::Button(labelled("Quit (Esc)").c_str())) is_over_ = true;
+    if (ImGui::Button(labelled("Quit (Ctrl+Q)").c_str())) is_over_ = true;
 }
 
 void StartScreen::draw_recovered() {

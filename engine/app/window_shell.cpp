@@ -6,6 +6,7 @@
 #include "core/translate.h"
 #include "platform/thread.h"
 #include "render/picture.h"
+#include "ui/colours.h"
 #include "ui/layout.h"
 
 #include <fmt/format.h>
@@ -74,8 +75,8 @@ private:
 
 void clear(VkCommandBuffer commands, VkImage image) {
     const auto code = [](float light) { return static_cast<float>(srgb_code(light)) / 255; };
-    const VkClearColorValue colour{
-        {code(window_background.r), code(window_background.g), code(window_background.b), 1}};
+    const VkClearColorValue colour{{code(colours().background.r), code(colours().background.g),
+                                    code(colours().background.b), 1}};
     const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
     vkCmdClearColorImage(commands, image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &colour, 1, &all);
 }
@@ -115,8 +116,14 @@ WindowShell::WindowShell(const ShellOptions& options)
       text_scale_(options.text_scale.scale),
       window_(options.title, options.width, options.height) {
     (void)choose_language(options.language.code);
-    if (options.grows) window_.grow_with_display();
+    choose_theme(options.theme.is_dark);
+    if (!options.has_size)
+        options.size.size ? window_.set_own_size(*options.size.size) : window_.fill_screen();
     restart_graphics();
+}
+
+WindowShell::~WindowShell() {
+    if (!options_.has_size) (void)keep_choice(options_.size.remember, window_.own_size());
 }
 
 void WindowShell::restart_graphics() {
@@ -154,26 +161,19 @@ std::string WindowShell::change_text_scale(double scale) {
     const double fits = too_wide * window_.size().width / (needed_pixels * window_.content_scale());
     text_scale_ = std::clamp(scale, smallest, std::clamp(fits, 1.0, largest));
     restart_graphics();
-    if (options_.text_scale.remember) {
-        try {
-            options_.text_scale.remember(text_scale_);
-        } catch (const LoadError& error) {
-            return error.what();
-        }
-    }
-    return format_translated("text: {:.0f} %", 100 * text_scale_);
+    const std::string problem = keep_choice(options_.text_scale.remember, text_scale_);
+    return problem.empty() ? format_translated("text: {:.0f} %", 100 * text_scale_) : problem;
 }
 
 std::string WindowShell::change_language(const std::string& code) {
     if (!choose_language(code))
         return fmt::format("there are no texts in the language '{}' on this system", code);
-    if (!options_.language.remember) return {};
-    try {
-        options_.language.remember(code);
-    } catch (const LoadError& error) {
-        return error.what();
-    }
-    return {};
+    return keep_choice(options_.language.remember, code);
+}
+
+std::string WindowShell::change_theme(bool is_dark) {
+    choose_theme(is_dark);
+    return keep_choice(options_.theme.remember, is_dark);
 }
 
 const Input& WindowShell::poll() {
@@ -209,7 +209,7 @@ void WindowShell::draw_panels(const std::function<void()>& describe,
     if (shot.rgba.empty()) return;
     wants_shot_ = false;
     try {
-        notice_ = fmt::format("saved {}", save_screenshot(options_.screenshots, shot).string());
+        notice_ = fmt::format("saved {}", save_screenshot(options_.files_folder, shot).string());
     } catch (const LoadError& error) {
         notice_ = error.what();
     }

@@ -1,5 +1,6 @@
 // The window and its graphics, in which the start screen and scenes are shown one after the other.
 #pragma once
+#include "core/load_error.h"
 #include "core/stage.h"
 #include "core/worker.h"
 #include "gpu/device.h"
@@ -8,20 +9,30 @@
 #include "ui/backend.h"
 #include "window/window.h"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace palpa {
 
-inline constexpr double text_step = 1.1;  // factor between two text sizes
+// Keeps what a person chose, if it can be kept; returns why not.
+template <class Function, class Value>
+std::string keep_choice(const Function& function, const Value& value) {
+    try {
+        if (function) function(value);
+        return {};
+    } catch (const LoadError& error) {
+        return error.what();
+    }
+}
 
-inline constexpr glm::vec3 window_background{0.86F, 0.89F, 0.93F};  // linear light
+inline constexpr double text_step = 1.1;  // factor between two text sizes
 
 // The scale of the window's text, relative to the display's.
 struct TextScaleChoice {
@@ -34,14 +45,27 @@ struct LanguageChoice {
     std::function<void(const std::string&)> remember{};  // what the person chose; throws LoadError
 };
 
+// The size of the window in the display's own units.
+struct WindowSizeChoice {
+    std::optional<std::array<int, 2>> size{};                   // none: it fills the screen
+    std::function<void(const std::array<int, 2>&)> remember{};  // throws LoadError
+};
+
+struct ThemeChoice {
+    bool is_dark = false;                  // to begin with
+    std::function<void(bool)> remember{};  // what the person chose; throws LoadError
+};
+
 struct ShellOptions {
     std::string title{"Palpa"};
     std::uint32_t width = 1280, height = 800;
-    bool grows = true;  // with the display's scale: nobody asked for that size in pixels
+    bool has_size = false;    // somebody asked for that size in pixels
+    WindowSizeChoice size{};  // else
     TextScaleChoice text_scale{};
     LanguageChoice language{};
-    bool validation = false;                 // validates all Vulkan calls
-    std::filesystem::path screenshots{"."};  // folder
+    ThemeChoice theme{};
+    bool validation = false;                  // validates all Vulkan calls
+    std::filesystem::path files_folder{"."};  // of screenshots; made when it is needed
 };
 
 // All objects that depend on the graphics device, created and destroyed together.
@@ -60,6 +84,9 @@ class WindowShell {
 public:
     // Throws PlatformError without a display, GpuError.
     explicit WindowShell(const ShellOptions& options);
+    WindowShell(const WindowShell&) = delete;
+    WindowShell& operator=(const WindowShell&) = delete;
+    ~WindowShell();  // the size of the window is remembered
 
     Window& window() noexcept { return window_; }
     // Null after the device was lost, until restart_graphics().
@@ -73,6 +100,9 @@ public:
 
     // Changes the language from the next frame on; returns a notice for the person, or nothing.
     std::string change_language(const std::string& code);
+
+    // Changes the theme from the next frame on; returns a notice for the person, or nothing.
+    std::string change_theme(bool is_dark);
 
     // Calls `frame` at most `most_frames_per_s` times a second until it returns false, or a signal
     // asks the program to end. A device that is lost is set up again, and `on_lost` called.

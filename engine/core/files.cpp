@@ -222,6 +222,12 @@ Existing check_output(const fs::path& path, std::string_view mark, bool overwrit
     return fs::exists(status) ? Existing::Replace : Existing::Refuse;
 }
 
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw LoadError({folder.string()}, "cannot be made: " + error.message());
+}
+
 std::vector<fs::path> list_folder(const fs::path& folder, std::size_t most) {
     std::vector<fs::path> paths;
     std::error_code error;

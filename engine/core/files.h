@@ -37,6 +37,9 @@ struct TextFile {
 };
 void write_text_files(std::span<const TextFile> files);
 
+// Makes the folder and those above it that are not there. Throws LoadError.
+void make_folder(const std::filesystem::path& folder);
+
 // Call before long work: throws LoadError if the result cannot be written to `path`. An existing
 // file may be replaced only if `overwrites` is set and `mark`, which identifies the program's own
 // files, stands near its beginning. Returns how to write. A device or a pipe is never replaced.

@@ -74,6 +74,7 @@ void add_molecule(const SceneDescription& scene, const MoleculeDescription& mole
         scene.engine
             ? find_engine_source(molecule.structure, molecule.topology, molecule.segment, files)
             : find_source(molecule.structure, molecule.topology, molecule.segment, files);
+    source.loaded_as = molecule.name;
     const AtomRange range = scene.engine ? add_engine_atoms(source, atoms)
                                          : add_segment_atoms(force_field, source, atoms);
     const std::uint32_t reference = find_reference_atom(molecule, atoms, range);
@@ -213,8 +214,10 @@ void add_anchors(const SceneDescription& scene, const MoleculeDescription& molec
 // Adds the springs that act and the atoms that are marked from the start.
 void add_restraints_and_pins(const SceneDescription& scene, World& world) {
     for (const StartRestraint& restraint : scene.restraints)
-        name_place(restraint.place,
-                   [&] { world.set(world.create(), build_spring(world, restraint)); });
+        name_place(restraint.place, [&] {
+            const Spring spring = build_spring(world, restraint);
+            if (spring.k > 0) world.set(world.create(), spring);
+        });
     for (const StartPin& pin : scene.pins)
         name_place(pin.place, [&] { world.set(world.create(), build_mark(world, pin)); });
 }

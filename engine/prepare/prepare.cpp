@@ -266,14 +266,6 @@ std::string format_approximate(const PreparedSystem& system, std::string_view ti
     return text;
 }
 
-void create_folder(const std::filesystem::path& folder) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error)
-        throw LoadError({folder.string()},
-                        fmt::format("the folder cannot be made: {}", error.message()));
-}
-
 }  // namespace
 
 PreparedSystem prepare_system(const ForceField& given_force_field, const Structure& structure,
@@ -393,7 +385,7 @@ void write_prepared(const PreparedSystem& system, const std::filesystem::path& f
     }
     for (const TextFile& file : scene) files.push_back({folder / file.path, file.text});
     for (TextFile& file : files) file.existing = existing;
-    create_folder(folder);
+    make_folder(folder);
     write_text_files(files);
     if (existing == Existing::Refuse) return;
     for (const char* const name : prepared_names) {

@@ -1,5 +1,6 @@
 #include "render/film.h"
 
+#include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
 #include "core/work_folder.h"
@@ -120,8 +121,7 @@ Film::Film(const FilmSettings& settings) : settings_(settings), folder_(folder_o
     std::error_code error;
     for (const fs::path& frame : list_frames(folder_, settings.overwrites))
         fs::remove(frame, error);
-    fs::create_directories(folder_, error);
-    if (error) throw LoadError({folder_.string()}, "cannot be made: " + error.message());
+    make_folder(folder_);
 }
 
 void Film::add(const Picture& picture) {

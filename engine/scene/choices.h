@@ -96,6 +96,10 @@ inline constexpr std::array<std::string_view, 12> lesson_quantity_names{
 enum class LessonPlot { None, Map, Force };
 inline constexpr std::array<std::string_view, 3> lesson_plot_names{"none", "map", "force"};
 
+// The panel of the window that a step of a lesson teaches, and opens.
+enum class LessonPanel { None, Coupling, Plots };
+inline constexpr std::array<std::string_view, 3> lesson_panel_names{"none", "coupling", "plots"};
+
 // In hand: the grabbed molecule as balls and sticks, all others as thin sticks without hydrogens.
 // Pocket: of the others a cartoon, and thin sticks of those residues that are near to it. Cartoon:
 // ribbons of proteins and nucleic acids, all else but waters as balls and sticks. Surface: the

@@ -202,6 +202,7 @@ struct LessonStepDescription {
     std::string view{};             // saved view at the start of the step; empty: none
     std::vector<std::string> of{};  // selections for the quantity
     LessonPlot plot = LessonPlot::None;
+    LessonPanel panel = LessonPanel::None;     // opened as the step begins
     std::optional<LessonQuestion> question{};  // question in place of a quantity
     // What an operator of `palpa lessons play` does: takes something in hand, changes the coupling,
     // then leads what it holds, Å from where the scene began, by seconds since the step began.

@@ -12,8 +12,10 @@
 #include "scene/edits/mobility.h"
 #include "scene/edits/pin.h"
 #include "scene/edits/put_back.h"
+#include "scene/edits/relax.h"
 #include "scene/edits/release.h"
 #include "scene/edits/remove.h"
+#include "scene/edits/rename.h"
 #include "scene/edits/reset.h"
 #include "scene/edits/restraint.h"
 #include "scene/edits/undo.h"
@@ -39,9 +41,9 @@ struct Address {
 };
 std::optional<Address> find_address(std::string_view text);
 
-using EditAction =
-    std::variant<GrabEdit, ReleaseEdit, PutBackEdit, AddEdit, RemoveEdit, PinEdit, RestraintEdit,
-                 MobilityEdit, AppearanceEdit, CouplingEdit, ResetEdit, UndoEdit, RedoEdit>;
+using EditAction = std::variant<GrabEdit, ReleaseEdit, PutBackEdit, AddEdit, RemoveEdit, RenameEdit,
+                                PinEdit, RestraintEdit, MobilityEdit, AppearanceEdit, RelaxEdit,
+                                CouplingEdit, ResetEdit, UndoEdit, RedoEdit>;
 
 inline const EditKind& kind_of(const EditAction& action) {
     return std::visit([](const auto& edit) -> const EditKind& { return edit.kind; }, action);

@@ -441,6 +441,8 @@ void visit_lesson_step(FieldVisitor& v, LessonStepDescription& s) {
             .meaning = "plot below the task: the map of map_cells, or the force on the molecule "
                        "over the distance"},
            lesson_plot_names, s.plot);
+    choose(v, {.key = "panel", .meaning = "panel of the window that is opened as the step begins"},
+           lesson_panel_names, s.panel);
     v.text({.key = "operator_take",
             .meaning = "what the operator of `palpa lessons play` takes in hand as the step "
                        "begins, as in `edits.take`; unset: no change"},

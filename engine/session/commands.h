@@ -18,13 +18,26 @@
 
 namespace palpa {
 
-// The settings that a person can change while a scene runs.
+// The settings that a person can change while a scene runs: the coupling of a hand, and the period
+// of all steps. Hands without a coupling of their own share the scene's until a person gives them
+// one.
 struct LiveSettings {
     CouplingDescription coupling;
     double period_ms = 1;
+    std::size_t hand = 0;
 
     friend bool operator==(const LiveSettings&, const LiveSettings&) = default;
 };
+inline LiveSettings settings_of(const SceneDescription& scene, std::size_t hand) {
+    return {coupling_of(scene, hand), scene.period_ms, hand};
+}
+inline void set_coupling(const LiveSettings& settings, SceneDescription& scene) {
+    std::optional<CouplingDescription>& own = scene.hands.at(settings.hand).coupling;
+    if (settings.hand == 0 || own)
+        coupling_of(scene, settings.hand) = settings.coupling;
+    else if (!(scene.coupling == settings.coupling))
+        own = settings.coupling;
+}
 
 // Commands are taken between two steps, in the order in which they were sent.
 struct Pause {
@@ -60,8 +73,7 @@ struct ReplayState {
     double at_s = 0, length_s = 0;  // from the session's beginning
     double speed = 1;               // 1: as fast as it was recorded, or as fast as it computes
     bool is_paused = false;
-    std::string verdict;    // how many rows of its trace are the same so far
-    LiveSettings settings;  // as the person had them
+    std::string verdict;  // how many rows of its trace are the same so far
 };
 
 // The names of the changes that undo and redo would take next; empty: there is none.
@@ -71,7 +83,6 @@ struct UndoReadout {
     std::string dropped_name;
     // A number that changes when undo or redo has restored settings or additions to the picture.
     std::uint64_t restored = 0;
-    LiveSettings settings;
     ViewAdditions additions;
 };
 
@@ -90,7 +101,7 @@ struct Readout {
     std::uint64_t refused_edits = 0;  // so far, but for undo and redo
     std::string problem;              // why the last Reset or edit failed; else empty
     std::string engine;               // how a remote engine fares, a sentence; empty: there is none
-    std::string edit_under_way;       // its key in a scene file; empty: none
+    std::string edit_under_way;       // its name in the history; empty: none
     std::optional<PlaybackState> playback;  // where a trajectory is played
     std::optional<ReplayState> replay;      // where a recorded session is played again
     LessonMeasures lesson;                  // where the scene has one

@@ -127,6 +127,7 @@ Json as_json(const CommandEvent& event) {
     if (const auto* const settings = std::get_if<LiveSettings>(&event.command)) {
         json["period_ms"] = settings->period_ms;
         json["coupling"] = list_settings(settings->coupling);
+        if (settings->hand > 0) json["slot"] = settings->hand;
     } else if (const auto* const lead = std::get_if<HandLead>(&event.command)) {
         json["lead"] = lead->leads;
         json["slot"] = lead->hand;
@@ -407,7 +408,8 @@ private:
         const double period_ms = read_amount(json, "period_ms");
         if (period_ms == 0) fail("the period is 0", "milliseconds");
         try {
-            return {parse_settings(settings), period_ms};
+            return {parse_settings(settings), period_ms,
+                    json.contains("slot") ? read_slot(json) : 0};
         } catch (const LoadError& error) {
             throw LoadError(place_, error.what());
         }

@@ -88,6 +88,13 @@ std::vector<EditDescription> LiveSimulation::list_edits() const {
     return edits;
 }
 
+PersonChoices LiveSimulation::choices() const {
+    PersonChoices choices{{}, additions_};
+    for (std::size_t slot = 0; slot < devices_.size(); ++slot)
+        choices.settings.push_back(settings_of(scene_, slot));
+    return choices;
+}
+
 bool LiveSimulation::all_stand_still() const noexcept {
     return std::ranges::all_of(devices_, &HandDevice::stands_still);
 }
@@ -153,7 +160,7 @@ void LiveSimulation::play(const CommandEvent& event) {
         if (!event.is_long) return edit(*change, event.settles);
         renewals_.await();
         draft_ = Draft{world_, *change, {}, {}};
-        readout_.edit_under_way = edit_names[change->action.index()];
+        readout_.edit_under_way = undo_name(change->action);
     }
 }
 
@@ -164,17 +171,17 @@ void LiveSimulation::play(const DeviceEvent& event) {
 }
 
 void LiveSimulation::apply(const LiveSettings& settings) {
-    const LiveSettings before = choices().settings;
+    const LiveSettings before = settings_of(scene_, settings.hand);
     set(settings);
     if (!undoes_edits_alone_)
-        history_.note_settings(before, choices().settings, poses_.front().time_s);
+        history_.note_settings(before, settings_of(scene_, settings.hand), poses_.front().time_s);
     publish_history();
 }
 
 void LiveSimulation::set(const LiveSettings& settings) {
     readout_.problem.clear();
     if (can_build_laws(settings.coupling)) {
-        coupling_of(scene_, 0) = settings.coupling;
+        set_coupling(settings, scene_);
     } else {
         readout_.problem =
             "eq. 2 with these values cannot reach the slopes A_f_max and A_f_min, so the previous "
@@ -272,7 +279,8 @@ bool LiveSimulation::has_renewal() {
 
 void LiveSimulation::edit(const EditDescription& edit, bool settles) {
     renewals_.await();
-    PersonChoices chosen = choices();
+    const PersonChoices before = choices();
+    PersonChoices chosen = before;
     UndoHistory::Part part{};
     try {
         part = history_.apply(world_, edit, chosen);
@@ -284,7 +292,9 @@ void LiveSimulation::edit(const EditDescription& edit, bool settles) {
         return publish_edit(settles);
     }
     additions_ = chosen.additions;
-    if (part == UndoHistory::Part::Settings) set(chosen.settings);
+    if (part == UndoHistory::Part::Settings)
+        for (std::size_t hand = 0; hand < chosen.settings.size(); ++hand)
+            if (chosen.settings[hand] != before.settings[hand]) set(chosen.settings[hand]);
     ++readout_.undo.restored;
     publish_history();
 }
@@ -346,7 +356,6 @@ void LiveSimulation::publish_history() {
     undo.redo = history_.redo_name();
     undo.dropped = history_.dropped();
     undo.dropped_name = history_.dropped_name();
-    undo.settings = choices().settings;
     undo.additions = additions_;
 }
 

@@ -104,9 +104,7 @@ private:
     void begin_pulls();
     void note_pulls();
     void publish_history();
-    PersonChoices choices() const {
-        return {{coupling_of(scene_, 0), scene_.period_ms}, additions_};
-    }
+    PersonChoices choices() const;
     void follow_unbinding();
     void begin_new_grips(std::span<const std::uint32_t> last_grip_numbers);
     std::vector<std::uint32_t> list_grip_numbers() const;

@@ -279,12 +279,6 @@ std::vector<fs::path> list_recorded(const fs::path& folder) {
     return files;
 }
 
-void make_folder(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw LoadError({folder.string()}, "cannot be made: " + error.message());
-}
-
 // By the nearest folder that is there.
 void check_can_be_made(const fs::path& folder) {
     std::error_code error;

@@ -70,12 +70,9 @@ std::string find_segment(const std::string& wanted, std::set<std::string>& taken
 }
 
 // The description that the molecule was loaded from; null where an edit has added it.
-const MoleculeDescription* find_loaded(const SceneDescription& scene, const std::string& name,
-                                       const Source& source) {
-    const auto found = std::ranges::find_if(scene.molecules, [&](const MoleculeDescription& m) {
-        return m.name == name && m.segment == source.segment &&
-               m.structure.string() == source.structure->file;
-    });
+const MoleculeDescription* find_loaded(const SceneDescription& scene, const Source& source) {
+    const auto found =
+        std::ranges::find(scene.molecules, source.loaded_as, &MoleculeDescription::name);
     return found == scene.molecules.end() ? nullptr : &*found;
 }
 
@@ -98,7 +95,7 @@ public:
         const Source& source = *world_.find<Source>(entity);
         const Mobility& mobility = *world_.find<Mobility>(entity);
         const AtomTable& atoms = world_.resource<AtomTable>();
-        const MoleculeDescription* const loaded = find_loaded(scene_, molecule.name, source);
+        const MoleculeDescription* const loaded = find_loaded(scene_, source);
         MoleculeDescription saved = loaded ? *loaded : MoleculeDescription{};
         saved.name = molecule.name;
         saved.motion = find_motion(world_, mobility);
@@ -383,6 +380,7 @@ SceneSaver::SceneSaver(const fs::path& scene_file, fs::path fallback)
 
 fs::path SceneSaver::save(const World& world, const ViewDescription& view) {
     if (!file_ && !may_write(folder_)) folder_ = fallback_;
+    make_folder(folder_);
     const fs::path file = file_ ? *file_ : find_free_file(folder_, stem_);
     save_scene(world, view, file, "A scene saved from Palpa's window, every key written out.",
                file_ ? Existing::Replace : Existing::Refuse);

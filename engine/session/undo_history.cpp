@@ -107,7 +107,9 @@ void UndoHistory::note_settings(const LiveSettings& before, const LiveSettings& 
     if (change.keys.empty()) return;
     std::string name = format_translated("change of {}", change.keys.front());
     if (change.keys.size() > 1) name = translated("change of settings");
-    const bool goes_on = change.is_of_numbers && !undo_.empty() &&
+    const auto* const last =
+        undo_.empty() ? nullptr : std::get_if<LiveSettings>(&undo_.back().before);
+    const bool goes_on = change.is_of_numbers && last && last->hand == before.hand &&
                          undo_.back().slid == change.keys &&
                          time_s - undo_.back().slid_s < together_s;
     if (goes_on) {
@@ -159,7 +161,7 @@ UndoHistory::Part UndoHistory::go(World& world, PersonChoices& choices, std::deq
         std::swap(world, *before);
     } else if (auto* const settings = std::get_if<LiveSettings>(&entry.before)) {
         part = Part::Settings;
-        std::swap(*settings, choices.settings);
+        std::swap(*settings, choices.settings.at(settings->hand));
     } else {
         part = Part::Additions;
         std::swap(std::get<ViewAdditions>(entry.before), choices.additions);

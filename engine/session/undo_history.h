@@ -17,7 +17,7 @@ namespace palpa {
 
 // A person's choices that are not part of the world.
 struct PersonChoices {
-    LiveSettings settings;
+    std::vector<LiveSettings> settings;  // of each hand
     ViewAdditions additions;
 };
 

@@ -47,6 +47,7 @@ struct Source {
     std::shared_ptr<const Structure> structure;
     std::shared_ptr<const Connectivity> connectivity;
     std::string segment;
+    std::string loaded_as{};  // the name in the scene file; empty: an edit added the molecule
 };
 
 // How the molecule may move, by itself or with the hand, and whether its joints may turn.

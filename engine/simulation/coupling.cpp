@@ -129,8 +129,11 @@ void change_coupling(const std::vector<std::string>& settings, Entity hand, Worl
 
 void keep_couplings(const World& world, SceneDescription& scene) {
     std::size_t slot = 0;
-    for (const Entity hand : find_hands(world))
-        coupling_of(scene, slot++) = coupling_of(world, hand).description;
+    for (const Entity hand : find_hands(world)) {
+        const Coupling& coupling = coupling_of(world, hand);
+        std::optional<CouplingDescription>& own = scene.hands.at(slot++).coupling;
+        (coupling.is_own ? own.emplace() : scene.coupling) = coupling.description;
+    }
 }
 
 std::optional<double> find_tolerance(const World& world) {

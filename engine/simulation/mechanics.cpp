@@ -74,6 +74,14 @@ void make_held_rigid(World& world) {
     }
 }
 
+RelaxSettings rest_settings(const World& world, std::int64_t steps) {
+    RelaxSettings to_rest;
+    to_rest.step.forces = build_step_settings(world).forces;
+    to_rest.force_tolerance = world.resource<MechanicsSettings>().statics.rest_kcal_per_mol;
+    to_rest.steps = static_cast<std::size_t>(steps);
+    return to_rest;
+}
+
 void clear_mechanics(World& world) {
     make_held_rigid(world);
     keep_orientations(world);
@@ -128,6 +136,18 @@ void renew_region(World& world) noexcept {
     }
 }
 
+JointRelaxReport relax_around_hands(World& world) {
+    const Mechanics& mechanics = world.resource<Mechanics>();
+    const StaticsDescription& s = world.resource<MechanicsSettings>().statics;
+    QuasiStatics statics = build_quasi_statics(*mechanics.model);
+    TorsionState& state = world.write<TorsionState>();
+    const JointRelaxReport report =
+        relax_joints(*mechanics.model, rest_settings(world, s.relax_steps), state, statics);
+    put_in_table(*mechanics.model, *mechanics.atoms, state.positions,
+                 world.write<AtomTable>().positions);
+    return report;
+}
+
 void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_relax) {
     const StaticsDescription& s = world.resource<MechanicsSettings>().statics;
     const MechanicsPlan plan = plan_mechanics(world);
@@ -146,10 +166,7 @@ void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_rel
             rest.springs.push_back(std::move(*found));
     });
     QuasiStatics statics = build_quasi_statics(loose);
-    RelaxSettings to_rest;
-    to_rest.step.forces = build_step_settings(world).forces;
-    to_rest.force_tolerance = s.rest_kcal_per_mol;
-    to_rest.steps = s.relaxes_start ? static_cast<std::size_t>(s.relax_steps) : 0;
+    const RelaxSettings to_rest = rest_settings(world, s.relaxes_start ? s.relax_steps : 0);
     StartReport& report = world.write<StartReport>();
     report.joints = plan.joints;
     report.joints_held = plan.joints_held;

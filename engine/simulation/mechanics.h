@@ -38,6 +38,10 @@ using RelaxProgressFunction = std::function<bool(const RelaxProgress&)>;
 // StartReport has the result.
 void relax_and_build_mechanics(World& world, const RelaxProgressFunction& on_relax = {});
 
+// Relaxes everything mobile as the scene's statics say, with what hands hold where it is; the
+// mechanics must then be rebuilt.
+JointRelaxReport relax_around_hands(World& world);
+
 // A world for measurements: a model at rest at its reference positions, moved as the scene's
 // statics say, and one hand that moves a base or pulls at a spring from there; nothing else.
 World build_mechanics_world(const SceneDescription& scene, TorsionModel model,

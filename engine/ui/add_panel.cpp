@@ -4,6 +4,7 @@
 #include "core/translate.h"
 #include "molecule/residue_kinds.h"
 #include "scene/find_scene.h"
+#include "ui/colours.h"
 #include "ui/layout.h"
 #include "ui/text_field.h"
 
@@ -19,8 +20,6 @@
 
 namespace palpa {
 namespace {
-
-constexpr ImU32 problem_colour = IM_COL32(165, 40, 15, 255);
 
 std::string in_lower_case(std::string_view text) {
     std::string lower(text);
@@ -130,7 +129,7 @@ std::optional<AddEdit> AddPanel::draw(const AtomDirectory& atoms) {
     ImGui::EndDisabled();
     ImGui::SameLine();
     const bool is_done = ImGui::Button(labelled("Close (Esc)").c_str());
-    ImGui::PushStyleColor(ImGuiCol_Text, problem_colour);
+    ImGui::PushStyleColor(ImGuiCol_Text, colours().wrong);
     ImGui::TextWrapped("%s", problem.empty() ? " " : problem.c_str());
     ImGui::PopStyleColor();
     ImGui::End();

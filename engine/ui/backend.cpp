@@ -1,6 +1,8 @@
 #include "ui/backend.h"
 
 #include "render/font_files.h"
+#include "ui/colours.h"
+#include "ui/icon_font.h"
 #include "ui/layout.h"
 
 #include <imgui.h>
@@ -27,6 +29,19 @@ bool is_font(const std::filesystem::path& file) {
     return mark == "\0\1\0\0"sv || mark == "true" || mark == "OTTO" || mark == "ttcf";
 }
 
+// Adds the icons (ui/icons.h) to the font before.
+void add_icons(float text_pixels) {
+    static constexpr ImWchar ranges[] = {0xF000, 0xF2FF, 0};
+    ImFontConfig config;
+    config.MergeMode = true;
+    config.FontDataOwnedByAtlas = false;
+    config.GlyphMinAdvanceX = text_pixels;
+    // The library only reads it.
+    auto* const data = const_cast<unsigned char*>(icon_font);  // NOLINT
+    ImGui::GetIO().Fonts->AddFontFromMemoryTTF(data, sizeof icon_font, 0.9F * text_pixels, &config,
+                                               ranges);
+}
+
 // The library's own bitmap font is the last resort.
 void add_font(float text_pixels) {
     // Latin, Greek, sub- and superscripts, arrows, mathematics: what formulas need.
@@ -44,20 +59,18 @@ void add_font(float text_pixels) {
 
 void set_ui_style(float text_scale) {
     // In whole pixels, as windows are: else their content is a part of one too high for them.
-    add_font(std::round(usual_text * text_scale));
-    ImGui::StyleColorsLight();
+    const float text_pixels = std::round(usual_text * text_scale);
+    add_font(text_pixels);
+    add_icons(text_pixels);
+    set_theme_colours();
     ImGuiStyle& style = ImGui::GetStyle();
     style.WindowRounding = 6;
     style.FrameRounding = style.GrabRounding = style.TabRounding = 4;
     style.WindowBorderSize = 0;
+    style.WindowMinSize = {4, 4};  // bars and strips of icons are lower than usual windows
     style.WindowPadding = {10, 8};
     style.ItemSpacing = {8, 5};
     style.ScaleAllSizes(text_scale);
-    style.Colors[ImGuiCol_WindowBg] = {1, 1, 1, 0.86F};
-    style.Colors[ImGuiCol_PopupBg] = {1, 1, 0.97F, 0.97F};
-    style.Colors[ImGuiCol_TitleBg] =
-        style.Colors[ImGuiCol_TitleBgActive] = {0.86F, 0.90F, 0.95F, 0.95F};
-    style.Colors[ImGuiCol_FrameBg] = {0.90F, 0.92F, 0.95F, 1};
 }
 
 UiBackend::UiBackend(const Window& window, GpuDevice& device, VkRenderPass pass,
@@ -124,12 +137,6 @@ bool UiBackend::covers(double x, double y) const {
         }
     }
     return false;
-}
-
-// Of this moment: what the library says of it is two pictures old.
-bool UiBackend::wants_keys() const {
-    const ImGuiContext& context = *ImGui::GetCurrentContext();
-    return context.ActiveId != 0 && context.ActiveId == context.InputTextState.ID;
 }
 
 }  // namespace palpa

@@ -23,8 +23,6 @@ public:
     void end();
     void draw(VkCommandBuffer commands);
 
-    // True if an overlay uses the keys.
-    bool wants_keys() const;
     // True if an overlay covered this point of the last frame, in pixels.
     bool covers(double x, double y) const;
 

@@ -1,12 +1,15 @@
 #include "ui/caption.h"
 
+#include "ui/colours.h"
+
 #include <imgui.h>
+#include <utility>
 
 namespace palpa {
 
 void draw_caption(const std::string& text, const ScreenArea& area) {
     constexpr float larger = 1.8F, pad = 8, rounding = 6;  // pixels at the usual size of text
-    constexpr ImU32 ink = IM_COL32(25, 30, 40, 255), ground = IM_COL32(255, 255, 255, 200);
+    const auto [ink, ground] = std::pair(colours().ink, colours().ground);
     if (text.empty() || area.width() <= 0) return;
     ImFont* const font = ImGui::GetFont();
     float height = larger * ImGui::GetFontSize();

@@ -1,6 +1,7 @@
 #include "ui/hand_sign.h"
 
 #include "render/renderer.h"
+#include "ui/colours.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -10,18 +11,17 @@
 namespace palpa {
 namespace {
 
-constexpr ImU32 sign_ink = IM_COL32(25, 30, 40, 255), sign_ground = IM_COL32(255, 255, 255, 215);
 constexpr ImU32 bar_empty = IM_COL32(200, 205, 212, 255), bar_full = IM_COL32(196, 84, 12, 255);
 constexpr float above = 90, bar_width = 84, bar_height = 9,
                 sign_pad = 5;  // pixels at the usual text
 
-// Draws text on a light ground.
+// Draws text on its ground.
 void draw_sign_text(ImDrawList& list, const ImVec2& at, const std::string& text) {
     const ImVec2 size = ImGui::CalcTextSize(text.c_str());
     const float gap = scaled(sign_pad);
     list.AddRectFilled({at.x - gap, at.y - 0.4F * gap},
-                       {at.x + size.x + gap, at.y + size.y + 0.4F * gap}, sign_ground, gap);
-    list.AddText(at, sign_ink, text.c_str());
+                       {at.x + size.x + gap, at.y + size.y + 0.4F * gap}, colours().ground, gap);
+    list.AddText(at, colours().ink, text.c_str());
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ void draw_hand_sign(const HandSign& sign, const FrameCamera& camera, const Scree
               std::clamp(seen.y - scaled(above), area.top + edge, bottom)};
     const double share =
         sign.most_newton > 0 ? std::clamp(sign.newton / sign.most_newton, 0.0, 1.0) : 0;
-    list.AddRectFilled({at.x - 1, at.y - 1}, {at.x + width + 1, at.y + height + 1}, sign_ink);
+    list.AddRectFilled({at.x - 1, at.y - 1}, {at.x + width + 1, at.y + height + 1}, colours().ink);
     list.AddRectFilled(at, {at.x + width, at.y + height}, bar_empty);
     list.AddRectFilled(at, {at.x + static_cast<float>(share) * width, at.y + height}, bar_full);
     at.y += height + scaled(sign_pad);

@@ -6,6 +6,15 @@
 
 namespace palpa {
 
+bool icon_button(const char* icon, const char* id, const ImVec2& size, bool is_on) {
+    const ImVec4 none{0, 0, 0, 0};
+    ImGui::PushStyleColor(ImGuiCol_Button,
+                          is_on ? ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive) : none);
+    const bool is_pressed = ImGui::Button((std::string(icon) + "##" + id).c_str(), size);
+    ImGui::PopStyleColor();
+    return is_pressed;
+}
+
 void tip(const char* text) {
     if (!ImGui::IsItemHovered()) return;
     ImGui::BeginTooltip();
@@ -13,14 +22,6 @@ void tip(const char* text) {
     ImGui::TextUnformatted(text);
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
-}
-
-void fold_in_small_window(bool& folds) {
-    constexpr float least_width = 860, least_height = 520;  // pixels at the usual size of text
-    const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    const bool is_small = screen.x < scaled(least_width) || screen.y < scaled(least_height);
-    if (is_small != folds) ImGui::SetNextWindowCollapsed(is_small);
-    folds = is_small;
 }
 
 std::string labelled(const char* english) {

@@ -1,7 +1,6 @@
 // Positions and sizes of panels for any size of window and text.
 #pragma once
 #include <imgui.h>
-#include <algorithm>
 #include <string>
 
 namespace palpa {
@@ -21,18 +20,12 @@ inline float scaled(float pixels) { return pixels * ImGui::GetFontSize() / usual
 
 inline float panel_edge() { return scaled(10); }  // margin around the panels
 
-// Width of the side panels for this width of the window.
-inline float panel_column(float window_width) {
-    return std::min(std::clamp(0.3F * window_width, scaled(240), scaled(350)), 0.4F * window_width);
-}
-
 inline constexpr ImGuiWindowFlags fixed_panel =
     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings;
 
-// Collapses the next panel when the window becomes so small that panels would cover half of the
-// picture, and expands it when the window becomes larger again. A person may change that in
-// between. `folds`: state of the panel from the frame before.
-void fold_in_small_window(bool& folds);
+// A button without a frame that shows an icon (ui/icons.h); `id` tells it from others. `is_on`: it
+// is drawn pressed.
+bool icon_button(const char* icon, const char* id, const ImVec2& size = {0, 0}, bool is_on = false);
 
 // Shows a tooltip for the previous item.
 void tip(const char* text);

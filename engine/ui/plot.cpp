@@ -98,7 +98,11 @@ void draw_plot(const char* id, const Plot& plot, float height) {
     const ImVec2 from = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x;
     ImGui::InvisibleButton(id, {std::max(width, 80.0F), height});
-    const ImVec2 low{from.x + 3.2F * line, from.y + line + 4};
+    // The margin has room for the widest number.
+    float margin = 2 * line;
+    for (const double tick : round_ticks(plot.y, 5))
+        margin = std::max(margin, ImGui::CalcTextSize(fmt::format("{:.6g}", tick).c_str()).x + 8);
+    const ImVec2 low{from.x + margin, from.y + line + 4};
     const float axes = height - plot_label_height(!plot.x_label.empty());
     const Area area{low, {from.x + std::max(width, 80.0F) - 8, low.y + axes}, plot.x, plot.y};
     ImDrawList& list = *ImGui::GetWindowDrawList();

@@ -1,6 +1,7 @@
 #include "ui/view_labels.h"
 
 #include "render/renderer.h"
+#include "ui/colours.h"
 #include "ui/layout.h"
 
 #include <imgui.h>
@@ -12,7 +13,6 @@
 namespace palpa {
 namespace {
 
-constexpr ImU32 ink = IM_COL32(25, 30, 40, 255), halo = IM_COL32(255, 255, 255, 140);
 constexpr float below = 12;  // pixels from the place to the text, at the usual size of text
 
 constexpr int most_lines_down = 5;
@@ -27,9 +27,10 @@ bool overlap(const TextBox& a, const TextBox& b) {
 
 void draw_text(ImDrawList& list, const ImVec2& at, const char* text) {
     for (const float x : {-1.5F, 0.0F, 1.5F}) {
-        for (const float y : {-1.5F, 0.0F, 1.5F}) list.AddText({at.x + x, at.y + y}, halo, text);
+        for (const float y : {-1.5F, 0.0F, 1.5F})
+            list.AddText({at.x + x, at.y + y}, colours().halo, text);
     }
-    list.AddText(at, ink, text);
+    list.AddText(at, colours().ink, text);
 }
 
 }  // namespace

@@ -49,12 +49,16 @@ constexpr std::array key_names = std::to_array<KeyName>({
     {GLFW_KEY_5, Key::Digit5},
     {GLFW_KEY_6, Key::Digit6},
     {GLFW_KEY_A, Key::A},
+    {GLFW_KEY_B, Key::B},
     {GLFW_KEY_C, Key::C},
     {GLFW_KEY_D, Key::D},
     {GLFW_KEY_E, Key::E},
     {GLFW_KEY_F, Key::F},
     {GLFW_KEY_G, Key::G},
     {GLFW_KEY_H, Key::H},
+    {GLFW_KEY_I, Key::I},
+    {GLFW_KEY_J, Key::J},
+    {GLFW_KEY_K, Key::K},
     {GLFW_KEY_L, Key::L},
     {GLFW_KEY_M, Key::M},
     {GLFW_KEY_N, Key::N},
@@ -245,22 +249,24 @@ VkSurfaceKHR Window::create_surface(VkInstance instance) const {
     return surface;
 }
 
-void Window::grow_with_display() {
-    int width = 0, height = 0, left = 0, top = 0, most_wide = 0, most_high = 0;
-    glfwGetWindowSize(window_, &width, &height);
-    const VkExtent2D pixels = size();
+void Window::fill_screen() {
+    int left = 0, top = 0, width = 0, height = 0;
     GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
-    if (pixels.width == 0 || !monitor) return;
-    glfwGetMonitorWorkarea(monitor, &left, &top, &most_wide, &most_high);
-    // On some systems a window's size is not in pixels, and has the scale already.
-    const float factor =
-        content_scale() * static_cast<float>(width) / static_cast<float>(pixels.width);
-    if (!(factor > 1)) return;
-    const auto grown = [&](int length, int most) {
-        const auto wanted = static_cast<int>(std::lround(factor * static_cast<float>(length)));
-        return std::max(length, std::min(wanted, most));
-    };
-    glfwSetWindowSize(window_, grown(width, most_wide), grown(height, most_high));
+    if (!monitor) return;
+    glfwGetMonitorWorkarea(monitor, &left, &top, &width, &height);
+    if (width <= 0 || height <= 0) return;
+    glfwSetWindowSize(window_, width, height);
+    glfwMaximizeWindow(window_);  // does nothing without a window manager
+}
+
+std::array<int, 2> Window::own_size() const {
+    std::array<int, 2> size{};
+    glfwGetWindowSize(window_, &size[0], &size[1]);
+    return size;
+}
+
+void Window::set_own_size(const std::array<int, 2>& size) {
+    glfwSetWindowSize(window_, size[0], size[1]);
 }
 
 VkExtent2D Window::size() const {

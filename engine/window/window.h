@@ -22,7 +22,7 @@ public:
 
 enum class MouseButton { Left, Right, Middle };
 
-// The keys that are used; all others are ignored.
+// The keys that are used, with all letters in their order; others are ignored.
 enum class Key {
     Space,
     Enter,
@@ -52,12 +52,16 @@ enum class Key {
     Digit5,
     Digit6,
     A,
+    B,
     C,
     D,
     E,
     F,
     G,
     H,
+    I,
+    J,
+    K,
     L,
     M,
     N,
@@ -142,8 +146,11 @@ public:
     std::vector<const char*> vulkan_extensions() const;
     VkSurfaceKHR create_surface(VkInstance instance) const;
 
-    // Enlarges the window by the display's scale, like text, if the display has room.
-    void grow_with_display();
+    // Makes the window as large as the display has room.
+    void fill_screen();
+    // Width and height in the display's own units, to be set again.
+    std::array<int, 2> own_size() const;
+    void set_own_size(const std::array<int, 2>& size);
 
     // Size of the picture in pixels; 0x0 while the window is minimised.
     VkExtent2D size() const;

@@ -84,7 +84,7 @@ struct Live {
     bool wait_until(const std::function<bool(const LiveFrame&)>& is_so) {
         const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
         while (std::chrono::steady_clock::now() < end) {
-            for (ServoTick tick; session.pop_tick(tick);) last = tick;
+            for (ServoTick tick; session.pop_ticks({&tick, 1});) last = tick;
             if (session.read_frame(frame) && is_so(frame)) return true;
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
         }
@@ -373,7 +373,7 @@ TEST_CASE("another device takes hold of the molecule where it is", "[app][thread
     int without_force = 0;
     for (bool is_other = false; !is_other || time_s < 0.3;) {
         ServoTick tick;
-        if (!live.session.pop_tick(tick)) {
+        if (!live.session.pop_ticks({&tick, 1})) {
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
             continue;
         }
@@ -390,7 +390,7 @@ TEST_CASE("another device takes hold of the molecule where it is", "[app][thread
     CHECK(there < 5);
     ServoTick later;  // the very one: a slow machine's newest frame may be seconds on
     while (!(later.reading.time_s > 1)) {
-        if (!live.session.pop_tick(later))
+        if (!live.session.pop_ticks({&later, 1}))
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     CHECK((later.sent_newton.x() < -0.2) == (mode == "mode=2"));
@@ -593,7 +593,7 @@ TEST_CASE("ticks that were missed are counted and left out, and a short delay is
     REQUIRE(device.ticks >= 2 * LateOmni::late_tick);
     CHECK(session.servo_health().overruns == missed);
     SafetyStage gravest = SafetyStage::None;
-    for (ServoTick tick; session.pop_tick(tick);) {
+    for (ServoTick tick; session.pop_ticks({&tick, 1});) {
         // Before the simulation left the servo alone.
         const bool counts = tick.reading.time_s < 1.5e-3 * LateOmni::late_tick;
         if (counts && tick.stage >= SafetyStage::Stale) gravest = std::max(gravest, tick.stage);

@@ -17,6 +17,9 @@ TEST_CASE("preferences read as they were written", "[tools][preferences]") {
                           .sound = GENERATE(true, false),
                           .recent = {"/a 'b'", "c"},
                           .hand_explained = true,
+                          .window_size = std::array{1280, 800},
+                          .dark_theme = true,
+                          .panels = {"left 240", "plots open"},
                           .language = "de"};
 
     CHECK(parse_preferences("device = \"omni\"", "p.toml") == Preferences{.device = "omni"});
@@ -40,9 +43,14 @@ TEST_CASE("preferences that are wrong say where", "[tools][preferences]") {
     CHECK_THAT(told("text_scale = 4.1"), Contains("p.toml:1:14: text_scale is not a number"));
     CHECK_THAT(told("text_scale = 0.4"), Contains("text_scale is not a number from 0.5 to 4"));
     CHECK_THAT(told("language = 1"), Contains("p.toml:1:12: language is not text"));
+    CHECK_THAT(told("window_size = [1280]"), Contains("window_size is not two whole numbers"));
+    CHECK_THAT(told("window_size = [100, 800]"), Contains("p.toml:1:15: window_size is not"));
+    CHECK_THAT(told("panels = [1]"), Contains("panels is not a list of texts"));
+    CHECK_THAT(told("dark_theme = 1"), Contains("dark_theme is not true or false"));
     CHECK_THAT(told("devise = \"omni\""),
                Contains("p.toml:1:10: unknown key 'devise'") &&
-                   Contains("device, sound, scene, recent, hand_explained, text_scale, language") &&
+                   Contains("device, sound, scene, recent, hand_explained, text_scale, language, "
+                            "window_size, dark_theme, panels") &&
                    Contains("did you mean 'device'"));
 }
 

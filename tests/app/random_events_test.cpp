@@ -1,11 +1,14 @@
 // Whatever a person presses, the device is never given more than its clamp, and nothing crashes.
+#include "app/actions.h"
+#include "app/frame.h"
 #include "app/live_session.h"
+#include "app/panels.h"
+#include "app/settings.h"
+#include "app/window_world.h"
 #include "devices/emulated_omni.h"
 #include "haptics/hand.h"
 #include "tests/support/water_scene.h"
 #include "ui/backend.h"
-#include "ui/overlay.h"
-#include "ui/shortcuts.h"
 
 #include <imgui.h>
 #include <atomic>
@@ -54,7 +57,7 @@ public:
     explicit RandomPerson(unsigned seed) : draw_(seed) {}
 
     // One event: the mouse, a key of the list, a handle pulled somewhere, or an edit.
-    void act(Overlay& overlay, LiveSession& session, std::vector<Command>& commands) {
+    void act(World& app, LiveSession& session) {
         ImGuiIO& io = ImGui::GetIO();
         switch (below(6)) {
             case 0:
@@ -66,8 +69,9 @@ public:
                 io.MouseWheel = static_cast<float>(below(3)) - 1;
                 break;
             case 2: {
-                const std::span<const Shortcut> keys = shortcuts();
-                (void)overlay.perform(keys[below(keys.size())].action, commands);
+                const std::span<const Action> all = list_actions();
+                const Action& action = all[below(all.size())];
+                if (needs_no_window(action)) perform(app, action);
                 break;
             }
             case 4:
@@ -82,6 +86,12 @@ public:
     }
 
 private:
+    // Tests have no window whose graphics could be restarted, write no files and make no sound.
+    static bool needs_no_window(const Action& action) {
+        return action.menu != Menu::File && !action.over_dialogs && action.id != "dark-theme" &&
+               action.id != "sound";
+    }
+
     EditAction choose_edit() {
         const std::string name = below(2) == 0 ? "fixed" : "moved";
         switch (below(7)) {
@@ -139,22 +149,23 @@ TEST_CASE("a thousand random events of a person give the device no more than its
     int width = 0, height = 0;
     ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
     {
-        Overlay overlay(scene);
         LiveSession session(scene, {}, device, &orders);
+        const WindowOptions options;
+        World app =
+            build_window_world({nullptr, &session, &options, &scene}, {{&device, &orders, 0.1}});
         RandomPerson person(seed);
-        LiveFrame frame;
+        NewestFrame& moment = app.write<NewestFrame>();
         std::uint64_t frames = 0;
         for (int i = 0; i < events; ++i) {
-            std::vector<Command> commands;
-            std::vector<Action> actions;
-            person.act(overlay, session, commands);
-            for (ServoTick tick; session.pop_tick(tick);) overlay.add_tick(tick);
-            frames += session.read_frame(frame) ? 1 : 0;
+            person.act(app, session);
+            take_ticks(app);
+            frames += session.read_frame(moment.frame) ? 1 : 0;
+            moment.is_there = frames > 0;
             ImGui::NewFrame();
-            if (frames > 0) overlay.draw(frame.readout, {}, commands, actions);
+            std::vector<PanelRequest> requests;
+            if (frames > 0) requests = draw_panels(app);
             ImGui::Render();
-            for (const Action action : actions) (void)overlay.perform(action, commands);
-            for (const Command& command : commands) session.send(command);
+            for (const PanelRequest& request : requests) request(app);
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
         }
         CHECK(frames > 0);

@@ -163,7 +163,7 @@ Outcome break_device(const SceneDescription& scene, const Fault& fault) {
     device.is_over.wait(false);
     constexpr int most_ticks = 8000;  // the servo goes on meanwhile
     ServoTick tick;
-    for (int i = 0; i < most_ticks && session.pop_tick(tick); ++i) {
+    for (int i = 0; i < most_ticks && session.pop_ticks({&tick, 1}); ++i) {
         outcome.is_full = outcome.is_full && tick.is_safety_full;
         outcome.stages.push_back(tick.stage);
     }

@@ -87,7 +87,7 @@ TEST_CASE("a recorded session is played again in a window, to the same world",
 
     CHECK_THAT(state().verdict, Contains("the same to the last digit"));
     CHECK(frame.places == last);
-    CHECK(state().settings.coupling.mode == CouplingMode::ConstantForceConstantDisplacement);
+    CHECK(frame.hands[0].settings.coupling.mode == CouplingMode::ConstantForceConstantDisplacement);
     CHECK(static_cast<double>(ticks.size()) == Approx(1e3 * state().length_s));
     for (std::size_t i = 1; i < ticks.size(); ++i)
         REQUIRE(ticks[i].reading.time_s >= ticks[i - 1].reading.time_s);

@@ -37,6 +37,7 @@ class StartScreen(unittest.TestCase):
             stderr=subprocess.PIPE,
             env={**os.environ, "DISPLAY": display.name, "XDG_CONFIG_HOME": str(self.folder),
                  "XDG_DATA_HOME": str(self.folder / "data"),
+                 "XDG_DOCUMENTS_DIR": str(self.folder),
                  "VK_INSTANCE_LAYERS": "VK_LAYER_KHRONOS_validation"})
 
     def find_window(self, display, name):
@@ -55,13 +56,13 @@ class StartScreen(unittest.TestCase):
 
     def screenshot(self, display):
         self.shots += 1
-        path = self.folder / f"palpa-{self.shots:04}.png"
+        path = self.folder / "Palpa" / f"palpa-{self.shots:04}.png"
         display.do("key", "F12")
         self.wait_until(path.exists, path.name)
         return path
 
     def end(self, display):
-        display.do("key", "Escape")
+        display.do("key", "ctrl+q")
         out, err = self.program.communicate(timeout=60)
         self.assertEqual(self.program.returncode, 0, err)
         self.assertNotIn("Validation Error", out + err)
@@ -96,7 +97,7 @@ class StartScreen(unittest.TestCase):
                                   capture_output=True, text=True)
         self.assertEqual(exported.returncode, 0, exported.stderr)
         prepared = self.folder / "data" / "palpa" / "scenes" / "hairpin"
-        recording = self.folder / "palpa-session-0001"
+        recording = self.folder / "Palpa" / "palpa-session-0001"
         with Display() as display:
             self.start(display)
             display.drop(self.wait_for(display, "Palpa"), structure)
@@ -161,7 +162,7 @@ class StartScreen(unittest.TestCase):
 
         # What is changed then is in the next one.
         self.shots = 0
-        for shot in self.folder.glob("palpa-*.png"):
+        for shot in (self.folder / "Palpa").glob("palpa-*.png"):
             shot.unlink()
         with Display() as display:
             self.start(display, scene / "scene-2.toml")

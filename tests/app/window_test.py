@@ -217,7 +217,7 @@ class Session(unittest.TestCase):
         self.wait_until(lambda: max(self.last_sound(), default=0) > amplitude, "a tone")
 
     def quit(self, display, *, changed=False):
-        display.do("key", "Escape")
+        display.do("key", "ctrl+q")
         if changed:  # asked whether to save
             self.screenshot(display)
             self.assertIsNone(self.program.poll(), "it did not ask")
@@ -227,13 +227,14 @@ class Session(unittest.TestCase):
         return json.loads(out)
 
     def quit_once_saved(self, display):
-        """Nothing is asked as soon as what the session has undone has reached the window; until then a
-        second Escape closes the question."""
+        """Nothing is asked as soon as what the session has undone has reached the window; until then
+        Escape closes the question."""
         for _ in range(60):
-            display.do("key", "Escape")
+            display.do("key", "ctrl+q")
             try:
                 _, err = self.program.communicate(timeout=2)
             except subprocess.TimeoutExpired:
+                display.do("key", "Escape")
                 continue
             return self.assertEqual(self.program.returncode, 0, err)
         self.fail("it asks whether to save what is saved")
@@ -258,11 +259,12 @@ class Session(unittest.TestCase):
 
             # The first slider of the gains, A_f max, to its far right.
             # A screenshot between two events makes sure that a frame has seen the first.
-            display.do("mousemove", 1000, 557)
+            self.open_tab(display, self.COUPLING)
+            display.do("mousemove", 1040, 615)
             self.screenshot(display)
             display.do("mousedown", 1)
             self.screenshot(display)
-            display.do("mousemove", 1180, 557)
+            display.do("mousemove", 1170, 615)
             self.screenshot(display)
             display.do("mouseup", 1)
             self.screenshot(display)
@@ -550,19 +552,23 @@ class Session(unittest.TestCase):
                 for group in groups]
 
     BUTTON, FIELD, PANEL = (178, 212, 252), (230, 235, 242), (253, 253, 254)
+    HAND, INSPECTOR, COUPLING, MACHINE = 1002, 1062, 1134, 1202  # the middles of tabs at the right
 
-    def find_lists(self, display):
-        """The middles of the arrows of the drop-down lists in the left panel, from above."""
+    def open_tab(self, display, x):
+        display.do("mousemove", x, 69)
+        self.screenshot(display)
+        display.do("click", 1)
+        self.screenshot(display)
+
+    def find_list(self, display):
+        """The middle of the arrow of the drop-down list at the top of the right panel."""
         (width, _), pixels = read_png(self.screenshot(display))
-        places = []
-        for x in range(1, 360):
-            ys = [y for y in range(20, 600) if self.is_near(pixels, width, x, y, self.BUTTON)
+        for x in range(width - 30, 980, -1):
+            ys = [y for y in range(80, 300) if self.is_near(pixels, width, x, y, self.BUTTON)
                   and self.is_near(pixels, width, x - 1, y, self.FIELD)]
             if len(ys) > 10:
-                places += [(x, y) for y in ys]
-        tops = sorted(y for x, y in places if (x, y - 1) not in places)
-        self.assertEqual(len(tops), 2, places)
-        return [(places[0][0] + 10, top + 10) for top in tops]
+                return x + 10, min(ys) + 10
+        self.fail("there is no list")
 
     def is_near(self, pixels, width, x, y, colour):
         return all(abs(pixels[4 * (width * y + x) + i] - colour[i]) < 4 for i in range(3))
@@ -632,7 +638,8 @@ class Session(unittest.TestCase):
             with Display() as display:
                 self.start(display)
                 # From the list: nothing is on the bus, so that D passes the Omni over.
-                _, devices = self.find_lists(display)
+                self.open_tab(display, self.MACHINE)
+                devices = self.find_list(display)
                 self.open_list(display, devices)
                 self.choose_entry(display, devices, 2)
                 self.wait_until(lambda: "device = 'omni'" in chosen.read_text(),
@@ -759,7 +766,8 @@ class Session(unittest.TestCase):
             display.do("key", "Escape")  # ends the selection, not the program
             self.wait_for_nothing_selected(display)
 
-            # A box around both oxygens.
+            # A box around both oxygens; the panel below has moved them up.
+            fixed, moved = self.find_waters(display)
             display.do("mousemove", fixed[0] - 30, fixed[1] - 30, "keydown", "ctrl", "mousedown", 1,
                        "keyup", "ctrl")
             self.screenshot(display)
@@ -926,14 +934,16 @@ class Session(unittest.TestCase):
     def test_escape_closes_what_is_open_before_it_quits(self):
         with Display() as display:
             self.start(display)
-            modes, _ = self.find_lists(display)
-            self.open_list(display, modes)
+            self.open_tab(display, self.COUPLING)
+            self.open_list(display, self.find_list(display))
             display.do("key", "Escape")
             self.screenshot(display)
             display.do("key", "h", "key", "Escape")  # the help
             self.screenshot(display)
-            display.do("key", "4")
-            display.do("key", "Escape")  # asks
+            display.do("key", "shift+w")
+            display.do("key", "Escape")  # quits nothing
+            self.screenshot(display)
+            display.do("key", "ctrl+q")  # asks
             self.screenshot(display)
             display.do("key", "Escape")  # stays
             self.screenshot(display)
@@ -1011,7 +1021,7 @@ class Session(unittest.TestCase):
                     self.start(display)
                 finally:
                     os.environ["PALPA_OPENHAPTICS"] = stub
-                display.do("key", "Escape")
+                display.do("key", "ctrl+q")
                 out, err = self.program.communicate(timeout=60)
                 self.assertEqual(self.program.returncode, 0, err)
                 self.assertEqual(json.loads(out)["device"], "mouse and keys")

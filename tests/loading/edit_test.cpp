@@ -795,3 +795,94 @@ TEST_CASE("a restraint pulls at both ends, and marks measure", "[simulation][edi
     CHECK(distance == Approx(now.norm()));
     CHECK(distance < apart.norm() - 0.2);
 }
+
+TEST_CASE("another spring of the same ends takes the first one's place, k = 0 removes it",
+          "[simulation][edit]") {
+    World world = load_two();
+    const std::vector<std::string> ends{"held:2 CA", "resting:2 CA"};
+    const auto list = [&] {
+        std::vector<double> ks;
+        world.each<Spring>([&](Entity, const Spring& spring) { ks.push_back(spring.k); });
+        return ks;
+    };
+    RestraintEdit{ends, {}, 50, 1}.apply(world, 0);
+    RestraintEdit{{"resting:3 CA"}, {{0, 0, 0}}, 7, 1}.apply(world, 0);
+    RestraintEdit{ends, {}, 30, 1}.apply(world, 0);
+    CHECK(list() == std::vector<double>{30, 7});
+    RestraintEdit{ends, {}, 0, 1}.apply(world, 0);
+    CHECK(list() == std::vector<double>{7});
+    CHECK_THAT(load_error_of([&] { RestraintEdit{ends, {}, 0, 1}.apply(world, 0); }),
+               Contains("no spring at held:2 CA and resting:2 CA"));
+}
+
+TEST_CASE("a mark of the same atoms removes the first one", "[simulation][edit]") {
+    World world = load_waters();
+    const PinEdit mark{{"fixed:1 OH2", "moved:1 OH2"}};
+    const auto count = [&] {
+        int marks = 0;
+        world.each<Mark>([&](Entity, const Mark&) { ++marks; });
+        return marks;
+    };
+    mark.apply(world, 0);
+    PinEdit{{"fixed:1 OH2"}}.apply(world, 0);
+    CHECK(count() == 2);
+    mark.apply(world, 0);
+    CHECK(count() == 1);
+    world.each<Mark>([&](Entity, const Mark& left) { CHECK(left.atoms.size() == 1); });
+}
+
+TEST_CASE("relaxing brings to rest what no hand holds", "[simulation][edit]") {
+    World world = load_two();
+    const Entity hand = hand_at(world, 0);
+    ContactModel felt = contact_at(world, 0).model;
+    for (int i = 1; i <= 20; ++i) felt = test::step_once(world, hand_after({0.05 * i, 0, 0}), felt);
+    const auto energy = [&] { return contact_at(world, 0).model.potential_kcal_per_mol; };
+    const Vec3 place = held_place(world, hand);
+    const double pulled = energy();
+
+    RelaxEdit{}.apply(world, 0);
+
+    const double rest = energy();
+    CHECK(rest < pulled - 0.01);
+    CHECK((held_place(world, hand) - place).norm() < 1e-9);
+    // Nothing is left to do: steps go nowhere, and neither does another relaxation.
+    const std::vector<Vec3> before = world.resource<AtomTable>().positions;
+    felt = contact_at(world, 0).model;
+    for (int i = 0; i < 20; ++i) felt = test::step_once(world, hand_after({1, 0, 0}), felt);
+    RelaxEdit{}.apply(world, 0);
+    CHECK(energy() == Approx(rest).margin(1e-3));
+    double farthest = 0;
+    for (std::size_t i = 0; i < before.size(); ++i)
+        farthest =
+            std::max(farthest, (world.resource<AtomTable>().positions[i] - before[i]).norm());
+    CHECK(farthest < 0.02);
+}
+
+TEST_CASE("where only hands move something, nothing can relax", "[simulation][edit]") {
+    World world = load_waters();
+    CHECK_THAT(load_error_of([&] { RelaxEdit{}.apply(world, 0); }),
+               Contains("nothing here moves by itself"));
+}
+
+TEST_CASE("a molecule has the name that it was given last, and no other one's",
+          "[simulation][edit]") {
+    World world = load_two();
+    const Entity molecule = molecule_called(world, "resting");
+    RenameEdit{"resting", "ligand"}.apply(world, 0);
+    CHECK(molecule_called(world, "ligand") == molecule);
+    CHECK(molecule_called(world, "resting") == Entity{});
+    GrabEdit{"ligand:3 CB"}.apply(world, 0);
+    RenameEdit{"ligand", "ligand"}.apply(world, 0);
+    CHECK_THAT(load_error_of([&] { RenameEdit{"ligand", "held"}.apply(world, 0); }),
+               Contains("there is already a molecule 'held'"));
+    CHECK_THAT(load_error_of([&] { RenameEdit{"ligand", "a:1"}.apply(world, 0); }),
+               Contains("'a:1' is not a name of a molecule"));
+    // A hand measures from it still.
+    int measured = 0;
+    world.each<GripSettings>([&](Entity, const GripSettings& settings) {
+        measured += settings.measured_from == "ligand" ? 1 : 0;
+    });
+    CHECK(measured == 1);
+    CHECK_THAT(load_error_of([&] { RenameEdit{"resting", "other"}.apply(world, 0); }),
+               Contains("resting"));
+}

@@ -116,7 +116,7 @@ private:
     }
 
     EditAction draw_edit() {
-        switch (draw(14)) {
+        switch (draw(16)) {
             case 0:
             case 1:
                 return GrabEdit{draw_molecule()};
@@ -147,6 +147,10 @@ private:
                 return AppearanceEdit{draw_molecule(), {}, {}, draw(2) == 0};
             case 12:
                 return CouplingEdit{{draw(2) == 0 ? "mode=3" : "mode=guarded"}};
+            case 13:
+                return RelaxEdit{};
+            case 14:
+                return RenameEdit{draw_molecule(), draw_name()};
             default:
                 return ResetEdit{};
         }

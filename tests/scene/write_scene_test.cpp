@@ -170,6 +170,7 @@ TEST_CASE("what a step of a lesson asks, shows and does is written and read agai
                     {"two", "text", "task", LessonQuantity::Distance, {}, {}, 0}};
     scene.lesson[0].of = {"name \"OH2\"", "molecule moved"};
     scene.lesson[0].plot = LessonPlot::Force;
+    scene.lesson[0].panel = LessonPanel::Plots;
     scene.lesson[0].operator_take = "moved:1";
     scene.lesson[0].operator_coupling = {"mode=4", "A_f=1000000000"};
     scene.lesson[0].operator_path = {{1, {0.1 + 0.2, 0, 0}, {}}, {2, {0, -3, 1}, {}}};
@@ -185,6 +186,7 @@ TEST_CASE("what a step of a lesson asks, shows and does is written and read agai
     CHECK(back.lesson[0].quantity == LessonQuantity::HydrogenBonds);
     CHECK(back.lesson[0].of == scene.lesson[0].of);
     CHECK(back.lesson[0].plot == LessonPlot::Force);
+    CHECK(back.lesson[0].panel == LessonPanel::Plots);
     CHECK(back.lesson[0].operator_take == "moved:1");
     CHECK(back.lesson[0].operator_coupling.size() == 2);
     CHECK(back.lesson[0].operator_path == scene.lesson[0].operator_path);

@@ -79,6 +79,7 @@ TEST_CASE("a journal reads as it was written, to the last bit", "[session][journ
     settings.coupling.A_d = 1 + 0.1 + 0.2;
     settings.coupling.feel_pN = {50, 400};
     settings.period_ms = 14;
+    settings.hand = 1;
     const EditDescription edit{0, 1, RestraintEdit{{"a:25 CA"}, {{{1, 2, 3}}}, 7, 0.5}, {}};
     for (const LiveEvent& event : std::vector<LiveEvent>{
              PublishEvent{}, StepEvent{123.4, true}, HoldEvent{}, CommandEvent{settings},

@@ -34,8 +34,10 @@ DeviceSpec omni_spec() {
 }
 
 struct Live {
-    explicit Live(const char* scene)
-        : simulation(read_scene(test::in_project(scene)), {HandDevice{omni_spec(), true}}, servo) {}
+    explicit Live(const char* scene, std::size_t hands = 1)
+        : poses(hands),
+          simulation(read_scene(test::in_project(scene)),
+                     std::vector(hands, HandDevice{omni_spec(), true}), servo) {}
 
     void play(const LiveEvent& event) { simulation.play(event, poses); }
     // Requests a long edit.
@@ -53,7 +55,7 @@ struct Live {
     const std::vector<Vec3>& positions() const { return world().resource<AtomTable>().positions; }
 
     NoServo servo;
-    std::vector<HandPose> poses{1};
+    std::vector<HandPose> poses;
     LiveSimulation simulation;
 };
 
@@ -72,7 +74,7 @@ TEST_CASE("while a long edit is made the world stands still, and nothing of it i
     history.apply(expected, edit_now(GrabEdit{"protease_a:25"}));
 
     live.begin(GrabEdit{"protease_a:25"});
-    CHECK(live.simulation.readout().edit_under_way == "take");
+    CHECK(live.simulation.readout().edit_under_way == "grip of protease_a:25");
     // By a thread of its own, or in the end by the one that adopts it.
     const bool has_thread = GENERATE(true, false);
     std::thread worker;
@@ -116,6 +118,47 @@ TEST_CASE("a coupling edit is undone in a live session, and begins from the wind
     CHECK(coupling().A_d == 3e7);
 }
 
+TEST_CASE("each hand has settings of its own, which undo brings back", "[session][undo]") {
+    Live live("tests/data/four_hands/scene.toml", 3);
+    // The second has a coupling of its own, the third has the scene's, as the first.
+    const std::size_t other = GENERATE(1, 2);
+    const auto now = [&](std::size_t hand) { return settings_of(live.simulation.scene(), hand); };
+    const LiveSettings first = now(0), second = now(other);
+    const std::size_t untouched = 3 - other;
+    const LiveSettings third = now(untouched);
+    // One that shares the scene's coupling has what the first has.
+    const auto check_untouched = [&](const LiveSettings& of_first) {
+        CHECK(now(untouched).period_ms == of_first.period_ms);
+        CHECK(now(untouched).coupling == (untouched == 2 ? of_first.coupling : third.coupling));
+    };
+    LiveSettings changed = second;
+    changed.coupling.A_d = 3e7;
+
+    live.play(CommandEvent{changed});
+    CHECK(now(0) == first);
+    CHECK(now(other) == changed);
+    check_untouched(first);
+    LiveSettings of_first = first;
+    of_first.coupling.A_d = 4e7;
+    of_first.period_ms = 2;
+    live.play(CommandEvent{of_first});
+    CHECK(now(0) == of_first);
+    CHECK(now(other).coupling == changed.coupling);
+    check_untouched(of_first);
+    // Sliders of two hands are two changes.
+    live.play(CommandEvent{edit_now(UndoEdit{})});
+    CHECK(now(0) == first);
+    CHECK(now(other) == changed);
+    check_untouched(first);
+    live.play(CommandEvent{edit_now(UndoEdit{})});
+    CHECK(now(0) == first);
+    CHECK(now(other) == second);
+    check_untouched(first);
+    live.play(CommandEvent{edit_now(RedoEdit{})});
+    CHECK(now(other) == changed);
+    check_untouched(first);
+}
+
 TEST_CASE("edits, settings, additions to the picture and pulls are undone in one order",
           "[session][undo]") {
     Live live("scenes/water");
@@ -149,7 +192,6 @@ TEST_CASE("edits, settings, additions to the picture and pulls are undone in one
     CHECK(live.simulation.scene().coupling.A_d == 3e7);
     undo();
     CHECK(live.simulation.scene().coupling.A_d == A_d);
-    CHECK(readout().settings.coupling.A_d == A_d);
     CHECK(live.positions() == pulled);
     undo();
     CHECK(live.positions() == start);

@@ -5,6 +5,8 @@
 #include "loading/edit.h"
 #include "loading/load.h"
 #include "scene/read_scene.h"
+#include "session/commands.h"
+#include "simulation/coupling.h"
 #include "simulation/grip_queries.h"
 #include "simulation/mechanics.h"
 #include "simulation/probe.h"
@@ -117,8 +119,9 @@ World check_saved(const World& world) {
         const Vec3 off = held_place(opened, hands_again[i]) - held_place(world, hands[i]);
         CHECK(off.norm() < 2 * last_digit);
     }
-    CHECK(coupling_of(opened, hand_at(opened, 0)).description ==
-          coupling_of(world, hand_at(world, 0)).description);
+    for (std::size_t i = 0; i < hands.size(); ++i)
+        CHECK(coupling_of(opened, hands_again[i]).description ==
+              coupling_of(world, hands[i]).description);
     save_scene(opened, view, second.path() / "saved.toml", "Saved.", Existing::Refuse);
     CHECK(find_difference(first.path() / "saved.toml", second.path() / "saved.toml").empty());
     return opened;
@@ -159,6 +162,24 @@ TEST_CASE("a saved flexible scene opens where the world was and stays there", "[
     }
 }
 
+TEST_CASE("a saved scene has the coupling of each hand", "[save]") {
+    World world = load("water/two-hands.toml");
+    SceneDescription scene = *world.resource<SceneFile>().scene;
+    LiveSettings second = settings_of(scene, 1);
+    second.coupling.A_d = 3e7;
+    set_coupling(second, scene);
+    set_couplings(scene, world);
+    check_saved(world);
+}
+
+TEST_CASE("a renamed molecule is saved with all that the scene says of it", "[save]") {
+    World world = load("hiv/flexible.toml");
+    const std::string around = world.resource<MechanicsSettings>().joints.around;
+    const World renamed = edited(world, RenameEdit{around, "drug"});
+    CHECK(renamed.resource<MechanicsSettings>().joints.around == "drug");
+    check_saved(renamed);
+}
+
 TEST_CASE("a saved scene has what edits have made", "[save]") {
     World world = load("water/space.toml");
     world = edited(world, AddEdit{"TIP3", "", "a long name of a water", {8, 0, 0}});
@@ -175,6 +196,8 @@ TEST_CASE("a saved scene has what edits have made", "[save]") {
     world = edited(world, GrabEdit{"copy"});
     check_saved(world);
     world = edited(world, RemoveEdit{"moved"});
+    check_saved(world);
+    world = edited(world, RenameEdit{"fixed", "the first water"});
     check_saved(world);
     world = edited(world, CouplingEdit{{"mode=3"}});
     check_saved(world);

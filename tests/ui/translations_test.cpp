@@ -5,7 +5,6 @@
 #include "ui/backend.h"
 #include "ui/language_list.h"
 #include "ui/layout.h"
-#include "ui/shortcuts.h"
 
 #include <imgui.h>
 #include <imgui_internal.h>
@@ -75,19 +74,6 @@ TEST_CASE("a label has the same ID in every language", "[ui][translate]") {
     const test::InLanguage german("de");
     if (!german.is_there()) return test::skip(no_catalogue);
     CHECK(labelled("Lesson") == "Lektion###Lesson");
-}
-
-TEST_CASE("the help is German, and letters of keys stay", "[ui][translate]") {
-    const test::InLanguage german("de");
-    if (!german.is_there()) return test::skip(no_catalogue);
-    const auto does = [](const std::string& keys) {
-        const std::vector<HelpLine> lines = list_help();
-        const auto line = std::ranges::find(lines, keys, &HelpLine::keys);
-        return line == lines.end() ? std::string() : line->does;
-    };
-    CHECK(does("P") == "Pause, weiter");
-    CHECK(does("Strg+S") == "Szene mit den jetzigen Einstellungen in neue Datei speichern");
-    CHECK(does("Strg+Umschalt+Z, Strg+Y") == "wiederherstellen");
 }
 
 TEST_CASE("who chooses a language from the list has its words at once", "[ui][translate]") {

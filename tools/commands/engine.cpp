@@ -27,7 +27,6 @@
 #include <cmath>
 #include <filesystem>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 namespace palpa {
@@ -147,12 +146,7 @@ void add_topology(const RunSystem& system, const std::vector<Vec3>& positions,
 }
 
 void write_folder(const EngineOptions& options, std::vector<TextFile> files) {
-    std::error_code error;
-    std::filesystem::create_directories(options.folder, error);
-    if (error) {
-        throw LoadError({options.folder.string()},
-                        fmt::format("the folder cannot be made: {}", error.message()));
-    }
+    make_folder(options.folder);
     for (TextFile& file : files) {
         file.path = options.folder / file.path;
         file.existing = check_output(file.path, engine_mark, options.overwrites);

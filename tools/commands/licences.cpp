@@ -20,6 +20,7 @@ constexpr std::array libraries = std::to_array<Library>({
     {"CLI11", "CLI11", "", "BSD-3-Clause", "https://github.com/CLIUtils/CLI11", "the command line"},
     {"Eigen", "Eigen3", "", "MPL-2.0", "https://eigen.tuxfamily.org", "vectors and matrices"},
     {"{fmt}", "fmt", "libfmt", "MIT", "https://fmt.dev", "text"},
+    {"Font Awesome 4.7", "", "", "OFL-1.1", "https://fontawesome.com/v4", "icons"},
     {"FreeType", "Freetype", "libfreetype", "FTL", "https://freetype.org", "words on pictures"},
     {"gemmi", "gemmi", "", "MPL-2.0", "https://project-gemmi.github.io", "the grammar of mmCIF"},
     {"GLFW", "glfw3", "libglfw", "Zlib", "https://www.glfw.org", "the window"},

@@ -20,9 +20,11 @@
 #include "tools/commands/kernels.h"
 #include "tools/commands/print_run.h"
 #include "tools/commands/screens.h"
+#include "tools/commands/window_actions.h"
 #include "view/first_view.h"
 
 #include <fmt/format.h>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -35,14 +37,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Keeps a choice of the window. Throws LoadError.
+template <auto Field>
+auto remember(PreferencesFile& preferences) {
+    return [&preferences](const auto& value) {
+        Preferences chosen = preferences.now();
+        chosen.*Field = value;
+        preferences.keep(chosen);
+    };
+}
+
 // Asked for, or else chosen last.
 SoundChoice build_sound_choice(const RunOptions& options, PreferencesFile& preferences) {
     return {.is_on = options.sound || preferences.now().sound.value_or(false),
-            .remember = [&preferences](bool is_on) {
-                Preferences chosen = preferences.now();
-                chosen.sound = is_on;
-                preferences.keep(chosen);
-            }};
+            .remember = remember<&Preferences::sound>(preferences)};
 }
 
 // Remembers the scene as opened; a failure keeps nobody from working.
@@ -56,35 +64,6 @@ void remember_scene(const fs::path& scene, PreferencesFile& preferences) {
     } catch (const LoadError& problem) {
         fmt::print(stderr, "warning: {}\n", problem.what());
     }
-}
-
-// The signs of the hand are explained once to each user.
-void remember_hand_explained(PreferencesFile& preferences) {
-    if (!preferences.can_keep()) return;
-    Preferences chosen = preferences.now();
-    chosen.hand_explained = true;
-    try {
-        preferences.keep(chosen);
-    } catch (const LoadError&) {  // they are explained again next time
-    }
-}
-
-TextScaleChoice build_text_scale(PreferencesFile& preferences) {
-    return {.scale = preferences.now().text_scale.value_or(1),
-            .remember = [&preferences](double scale) {
-                Preferences chosen = preferences.now();
-                chosen.text_scale = scale;
-                preferences.keep(chosen);
-            }};
-}
-
-LanguageChoice build_language(PreferencesFile& preferences) {
-    return {.code = preferences.now().language.value_or(""),
-            .remember = [&preferences](const std::string& code) {
-                Preferences chosen = preferences.now();
-                chosen.language = code;
-                preferences.keep(chosen);
-            }};
 }
 
 Existing check_shot(const RunOptions& options) {
@@ -135,8 +114,10 @@ SceneDescription find_played(const SceneDescription& scene, const WindowReport& 
                              bool is_emulated) {
     SceneDescription played = scene;
     if (!is_emulated) played.hands.front().stroke = Stroke::Path;  // wherever the mouse went
-    coupling_of(played, 0) = report.settings.coupling;
-    played.period_ms = report.settings.period_ms;
+    for (const LiveSettings& settings : report.settings) {
+        set_coupling(settings, played);
+        played.period_ms = settings.period_ms;
+    }
     played.seconds = static_cast<double>(report.summary.ticks) / servo_rate_hz;
     return played;
 }
@@ -173,13 +154,20 @@ void check_window_options(const RunOptions& options) {
 }
 
 ShellOptions shell_options(const RunOptions& options, PreferencesFile& preferences) {
+    const Preferences& now = preferences.now();
     return {.width = options.width,
             .height = options.height,
-            .grows = !options.has_size,
-            .text_scale = build_text_scale(preferences),
-            .language = build_language(preferences),
+            .has_size = options.has_size,
+            .size = {.size = now.window_size,
+                     .remember = remember<&Preferences::window_size>(preferences)},
+            .text_scale = {.scale = now.text_scale.value_or(1),
+                           .remember = remember<&Preferences::text_scale>(preferences)},
+            .language = {.code = now.language.value_or(""),
+                         .remember = remember<&Preferences::language>(preferences)},
+            .theme = {.is_dark = now.dark_theme.value_or(false),
+                      .remember = remember<&Preferences::dark_theme>(preferences)},
             .validation = options.validation,
-            .screenshots = options.screenshots};
+            .files_folder = options.files_folder};
 }
 
 std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
@@ -210,8 +198,8 @@ std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
     const std::unique_ptr<FrameServer> server = open_server(serve, world, !options.json);
     const bool is_from_crash = is_recovered(scene.file);
     if (preferences.can_keep() && !is_from_crash) remember_scene(scene.file, preferences);
-    SceneSaver saver(is_from_crash ? options.screenshots / "recovered.toml" : scene.file,
-                     options.screenshots);
+    SceneSaver saver(is_from_crash ? options.files_folder / "recovered.toml" : scene.file,
+                     options.files_folder);
     const ViewSettings first_view = first_settings(scene.view, world);
     RecoveryFile recovery;
     const auto save = [&](const World& now, const ViewDescription& view) {
@@ -220,10 +208,17 @@ std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
         if (is_from_crash) forget_recovered(scene.file);
         return where;
     };
+    std::optional<ActionFile> actions;
+    if (options.actions) actions.emplace(*options.actions, options.overwrites);
+    const auto start = std::chrono::steady_clock::now();
+    const auto note_action = [&](const Action& action, By by) {
+        const std::chrono::duration<double> since = std::chrono::steady_clock::now() - start;
+        if (actions) actions->add(since.count(), action, by);
+    };
     const WindowReport report = run_window(
         *shell, scene, *first.device,
         {.view = first_view,
-         .screenshots = options.screenshots,
+         .files_folder = options.files_folder,
          .last_shot = options.last_shot,
          .last_shot_existing = check_shot(options),
          .last_shot_s = options.last_shot_s,
@@ -239,13 +234,16 @@ std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
          .devices = options.play ? DeviceMenu() : devices.menu(),
          .sound = build_sound_choice(options, preferences),
          .is_hand_explained = preferences.now().hand_explained,
-         .remember_hand_explained = [&] { remember_hand_explained(preferences); },
+         .remember_hand_explained = remember<&Preferences::hand_explained>(preferences),
+         .panels = preferences.now().panels,
+         .remember_panels = remember<&Preferences::panels>(preferences),
          .save = save,
          .save_for_crash = [&](const World& now,
                                const ViewDescription& view) { recovery.save(now, view); },
          .notice = news,
          .server = server.get(),
-         .lose_device_at = options.lose_device_at});
+         .lose_device_at = options.lose_device_at,
+         .note_action = note_action});
     if (report.frames == 0 && report.next) return report.next;  // it was not loaded
     if (noted_interrupt() == 0) recovery.forget();
     const SceneDescription played = find_played(scene, report, options.play);
@@ -274,15 +272,18 @@ std::optional<NextScreen> show_recording(WindowShell& shell, PreferencesFile& pr
             view = first_settings(scene.view, load_world(scene, on_stage));
         });
     if (!is_loaded) return NextScreen{};
-    const WindowReport report = run_window(shell, scene, first,
-                                           {.view = view,
-                                            .screenshots = options.screenshots,
-                                            .last_shot = options.last_shot,
-                                            .last_shot_existing = check_shot(options),
-                                            .last_shot_s = options.last_shot_s,
-                                            .second = {scene.hands.size() > 1 ? &second : nullptr},
-                                            .replay = folder,
-                                            .sound = build_sound_choice(options, preferences)});
+    const WindowReport report =
+        run_window(shell, scene, first,
+                   {.view = view,
+                    .files_folder = options.files_folder,
+                    .last_shot = options.last_shot,
+                    .last_shot_existing = check_shot(options),
+                    .last_shot_s = options.last_shot_s,
+                    .second = {scene.hands.size() > 1 ? &second : nullptr},
+                    .replay = folder,
+                    .sound = build_sound_choice(options, preferences),
+                    .panels = preferences.now().panels,
+                    .remember_panels = remember<&Preferences::panels>(preferences)});
     if (report.replay) {
         fmt::print("{}: played {:.2f} of {:.2f} s\n  {}\n", folder.string(), report.replay->at_s,
                    report.replay->length_s, report.replay->verdict);
@@ -290,8 +291,19 @@ std::optional<NextScreen> show_recording(WindowShell& shell, PreferencesFile& pr
     return report.next;
 }
 
+RunOptions with_files_folder(RunOptions options) {
+    std::error_code error;
+    if (options.files_folder.empty())
+        options.files_folder = find_files_folder();
+    else if (!fs::is_directory(options.files_folder, error))
+        throw LoadError({options.files_folder.string()},
+                        "is not a folder; expected the folder for what the window saves");
+    return options;
+}
+
 int open_window(const SceneDescription& scene, const World& world,
-                const EmulatedOmniSettings& settings, const RunOptions& options) {
+                const EmulatedOmniSettings& settings, const RunOptions& given) {
+    const RunOptions options = with_files_folder(given);
     PreferencesFile preferences(find_preferences_file());
     std::optional<WindowShell> shell;
     follow_screens(shell, preferences, options,

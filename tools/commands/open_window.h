@@ -16,6 +16,9 @@ namespace palpa {
 // What can be said of the options before anything is loaded. Throws LoadError.
 void check_window_options(const RunOptions& options);
 
+// Sets the folder for what the window saves. Throws LoadError if one is given that is not there.
+RunOptions with_files_folder(RunOptions options);
+
 // Of the window that a run opens.
 ShellOptions shell_options(const RunOptions& options, PreferencesFile& preferences);
 

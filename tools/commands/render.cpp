@@ -1,5 +1,6 @@
 #include "tools/commands/render.h"
 
+#include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
 #include "devices/emulated_omni.h"
@@ -32,7 +33,6 @@
 #include <cstddef>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 namespace palpa {
@@ -292,9 +292,7 @@ FrameWriter::FrameWriter(const std::filesystem::path& folder, std::uint32_t widt
 }
 
 void FrameWriter::write(World& world) {
-    std::error_code error;
-    std::filesystem::create_directories(folder_, error);
-    if (error) throw LoadError({folder_.string()}, "cannot be made: " + error.message());
+    make_folder(folder_);
     WordedFrame frame = build_worded_frame(builder_, world, first_settings(view_, world));
     if (written_ == 0) {
         camera_ = first_camera(view_, frame.scene, framed_atoms(view_, world),

@@ -313,9 +313,12 @@ void add_window_options(CLI::App& run, RunOptions& options) {
                  "play the force as a tone: stronger is higher and louder");
     add_size_option(run, "--size", options.width, options.height);
     run.get_option("--size")->each([&options](const std::string&) { options.has_size = true; });
-    run.add_option("--screenshots", options.screenshots,
-                   "folder for screenshots (default: the current one)")
+    run.add_option("--files,--screenshots", options.files_folder,
+                   "folder for what the window saves (default: Palpa in your documents)")
         ->type_name("FOLDER");
+    run.add_option("--actions", options.actions,
+                   "CSV file: a row for each action of the person ('palpa help actions')")
+        ->type_name("FILE");
     CLI::Option* const shot =
         run.add_option("--shot", options.last_shot,
                        "save a screenshot to this file, then close the window")

@@ -33,9 +33,10 @@ struct RunOptions {
     std::optional<std::string> second;  // the same, of the scene's second hand
     bool sound = false;                 // in a window: the felt force as a tone, from the beginning
     bool play = false;  // in a window: the emulated hand plays the scene's stroke, no mouse
-    std::uint32_t width = 1280, height = 800;        // of the window
-    bool has_size = false;                           // they were asked for
-    std::filesystem::path screenshots = ".";         // folder for those of the window
+    std::uint32_t width = 1280, height = 800;      // of the window
+    bool has_size = false;                         // they were asked for
+    std::filesystem::path files_folder{};          // of what the window saves; empty: the documents
+    std::optional<std::filesystem::path> actions;  // file for what a person does in the window
     std::optional<std::filesystem::path> last_shot;  // of the window, which then closes
     double last_shot_s = 5;
     std::uint64_t lose_device_at = 0;

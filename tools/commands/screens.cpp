@@ -32,7 +32,7 @@ RunOptions options_of_later(const RunOptions& first) {
     later.device = first.device;
     later.second = first.second;
     later.sound = first.sound;
-    later.screenshots = first.screenshots;
+    later.files_folder = first.files_folder;
     later.json = first.json;
     return later;
 }
@@ -77,7 +77,7 @@ StartOptions build_start(PreferencesFile& preferences, const RunOptions& options
 }
 
 fs::path prepared_folder(const RunOptions& options) {
-    return find_prepared_folder().value_or(options.screenshots);
+    return find_prepared_folder().value_or(options.files_folder);
 }
 
 // Nothing where the person changed their mind.
@@ -147,7 +147,8 @@ void follow_screens(std::optional<WindowShell>& shell, PreferencesFile& preferen
     }
 }
 
-int open_screens(const std::vector<fs::path>& files, const RunOptions& options) {
+int open_screens(const std::vector<fs::path>& files, const RunOptions& given) {
+    const RunOptions options = with_files_folder(given);
     PreferencesFile preferences(find_preferences_file());
     std::optional<WindowShell> shell;
     shell.emplace(shell_options(options, preferences));

@@ -1,5 +1,6 @@
 #include "tools/commands/study.h"
 
+#include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
 #include "core/version.h"
@@ -81,8 +82,7 @@ std::unique_ptr<FolderLock> make_study_folder(const std::filesystem::path& folde
         throw LoadError({(folder / file).string()},
                         "already exists, so the folder contains a study; expected a new folder");
     }
-    std::filesystem::create_directories(folder, error);
-    if (error) throw LoadError({folder.string()}, "cannot be made: " + error.message());
+    make_folder(folder);
     return std::make_unique<FolderLock>(folder);
 }
 

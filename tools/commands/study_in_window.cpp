@@ -95,14 +95,13 @@ int run_study(const StudyCommand& command) {
     if (!command.folder) {
         throw LoadError({"--output"}, "is missing; expected the folder with the trials of people");
     }
-    std::error_code error;
-    std::filesystem::create_directories(*command.folder, error);
-    if (error) throw LoadError({command.folder->string()}, "cannot be made: " + error.message());
+    make_folder(*command.folder);
     const FolderLock lock(*command.folder);  // a second window would lose the first one's trials
     const std::filesystem::path table = *command.folder / "trials.csv";
     const std::filesystem::path line = *command.folder / "line.csv";
     const std::filesystem::path session = *command.folder / "session.json";
     const nlohmann::ordered_json study = describe_people(options);
+    std::error_code error;
     const bool is_first = !std::filesystem::exists(table, error);
     const Existing line_existing = check_output(line, line_names, true);
     const std::string before = is_first ? trial_names() : read_table(table);

@@ -17,15 +17,6 @@
 namespace palpa {
 namespace {
 
-void check_name_is_new(const World& world, const std::string& name) {
-    if (name.empty()) refuse("the new molecule has no name; expected a name such as name = \"w2\"");
-    const std::optional<Address> address = find_address(name);
-    if (!address || !address->residue.empty())
-        refuse(fmt::format("'{}' is not a name of a molecule; expected one without ':'", name));
-    if (molecule_called(world, name) != Entity{})
-        refuse(fmt::format("there is already a molecule '{}'; expected another name", name));
-}
-
 Source build_source(const World& world, Entity original, const AddEdit& edit) {
     if (original != Entity{}) return copy_source(world, original, edit.name);
     if (!edit.structure.empty())

@@ -76,6 +76,15 @@ void begin_new_grip(World& world, Entity hand) {
     ++world.write<Contact>(hand)->sent.model.grip_number;
 }
 
+void check_name_is_new(const World& world, const std::string& name) {
+    if (name.empty()) refuse("the molecule has no name; expected one such as \"w2\"");
+    const std::optional<Address> address = find_address(name);
+    if (!address || !address->residue.empty())
+        refuse(fmt::format("'{}' is not a name of a molecule; expected one without ':'", name));
+    if (molecule_called(world, name) != Entity{})
+        refuse(fmt::format("there is already a molecule '{}'; expected another name", name));
+}
+
 void check_room(const AtomTable& atoms, AtomRange added, const std::string& name,
                 const std::string& remedy) {
     constexpr double nearest = 1;  // Å

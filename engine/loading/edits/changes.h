@@ -37,6 +37,9 @@ void release(World& world, Entity hand);
 // Increments the grip number, so that the servo resets its pose from the model.
 void begin_new_grip(World& world, Entity hand);
 
+// Refuses a name that a molecule has, and one that no address could have.
+void check_name_is_new(const World& world, const std::string& name);
+
 // Refuses a place where other molecules are: nothing that is not bonded comes as near, and from
 // there forces would tear molecules apart. `remedy`: what would be right.
 void check_room(const AtomTable& atoms, AtomRange added, const std::string& name,

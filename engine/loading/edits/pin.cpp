@@ -4,7 +4,13 @@
 namespace palpa {
 
 void PinEdit::apply(World& world, std::size_t /*hand*/) const {
-    world.set(world.create(), build_mark(world, *this));
+    const Mark mark = build_mark(world, *this);
+    Entity same;
+    world.each<Mark>([&](Entity entity, const Mark& other) {
+        if (other.atoms == mark.atoms) same = entity;
+    });
+    if (same != Entity{}) return world.destroy(same);
+    world.set(world.create(), mark);
 }
 
 }  // namespace palpa

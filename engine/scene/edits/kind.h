@@ -9,7 +9,7 @@ struct EditKind {
     bool with_engine = false;     // also where a remote engine places the atoms
     bool is_quick = false;        // takes no time in a world of any size
     bool sets_coupling = false;   // changes the coupling
-    bool is_of_molecules = true;  // false for what is in hand, and for the coupling
+    bool is_of_molecules = true;  // false for what is in hand, the coupling, and where atoms are
 };
 
 }  // namespace palpa

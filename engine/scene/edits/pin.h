@@ -12,6 +12,7 @@ namespace palpa {
 class World;
 
 // A measurement: of one atom a label, of two their distance, of three an angle, of four a dihedral.
+// The same atoms once more remove it.
 struct PinEdit {
     static constexpr EditKind kind{.key = "pin", .is_quick = true};
 

@@ -15,9 +15,12 @@ namespace palpa {
 
 class World;
 
-// A spring between two atoms or residues, or from one to a place.
+// A spring between two atoms or residues, or from one to a place, instead of an earlier one of the
+// same ends; k = 0 removes that.
 struct RestraintEdit {
     static constexpr EditKind kind{.key = "restraint"};
+    static constexpr double least_k = 1e-3, most_k = 1e4;  // kcal/mol/Å^2, of one that is there
+    static constexpr double most_length = 1e3;             // Å
 
     std::vector<std::string> atoms;
     std::optional<std::array<double, 3>> place_angstrom;
@@ -45,11 +48,14 @@ struct RestraintEdit {
                        .highest = farthest_angstrom},
                       place_angstrom);
         v.real({.key = "k_kcal_per_mol_angstrom2",
-                .meaning = "stiffness, E = k x²/2",
-                .lowest = 1e-3,
-                .highest = 1e4},
+                .meaning = "stiffness, E = k x²/2; 0: no spring",
+                .lowest = 0,
+                .highest = most_k},
                k_kcal_per_mol_angstrom2);
-        v.real({.key = "length_angstrom", .meaning = "length at rest", .lowest = 0, .highest = 1e3},
+        v.real({.key = "length_angstrom",
+                .meaning = "length at rest",
+                .lowest = 0,
+                .highest = most_length},
                length_angstrom);
     }
     void check(const std::string& key, Problems& problems) const {

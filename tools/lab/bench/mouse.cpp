@@ -62,7 +62,7 @@ MousePlay play_mouse(const SceneDescription& scene, const EmulatedOmniSettings& 
     const Clock::time_point begin = Clock::now();
     for (Clock::time_point next_look = begin;;) {
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
-        for (ServoTick tick; session.pop_tick(tick);) {
+        for (ServoTick tick; session.pop_ticks({&tick, 1});) {
             statistics.add(tick);
             if (statistics.ticks() == 1) start = tick.contact.molecule.place_angstrom;
             person.see(tick, start + pull_angstrom * direction);

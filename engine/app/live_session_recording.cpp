@@ -1,0 +1,99 @@
+// Recordings of a live session, and the thread that writes them.
+#include "app/live_session.h"
+#include "core/load_error.h"
+
+#include <fmt/format.h>
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace palpa {
+
+void LiveSession::begin_recording(const std::filesystem::path& folder, bool overwrites,
+                                  const std::optional<TrajectorySettings>& trajectory) {
+    const std::lock_guard lock(recorder_mutex_);
+    if (plays_)
+        throw LoadError({folder.string()},
+                        "cannot be recorded: a trajectory moves the atoms, and a recording does "
+                        "not hold its frames; expected a session without a trajectory");
+    if (recorder_.is_recording())
+        throw LoadError({folder.string()}, "another recording is running; end it first (F9)");
+    record_what_happened();
+    recording_problem_.clear();
+    recorder_.begin(folder, overwrites, trajectory);
+    if (trajectory) trajectory_queue_.begin(trajectory->per_second);
+}
+
+void LiveSession::end_recording() {
+    const std::optional<UnbindingPath> unbinding = find_unbinding();
+    const std::lock_guard lock(recorder_mutex_);
+    trajectory_queue_.end();
+    record_what_happened();
+    recorder_.end(unbinding);
+    if (recording_problem_.empty()) return;
+    throw LoadError({"recording"}, std::exchange(recording_problem_, {}));
+}
+
+void LiveSession::write_statistics(const std::filesystem::path& path, bool overwrites) {
+    const std::lock_guard lock(recorder_mutex_);
+    recorder_.write_statistics(path, overwrites);
+}
+
+std::optional<double> LiveSession::recorded_s() {
+    const std::lock_guard lock(recorder_mutex_);
+    if (!recorder_.is_recording()) return std::nullopt;
+    return recorder_.recorded_s();
+}
+
+std::vector<std::string> LiveSession::take_recording_notes() {
+    const std::lock_guard lock(recorder_mutex_);
+    std::vector<std::string> notes = recorder_.take_notes();
+    if (const std::size_t lost = trajectory_queue_.take_lost(); lost > 0)
+        notes.push_back(fmt::format(
+            "{} frames of the trajectory are missing: the disk was too slow to write them", lost));
+    if (!recorder_.is_recording() && !recording_problem_.empty())
+        notes.push_back(std::exchange(recording_problem_, {}));
+    return notes;
+}
+
+void LiveSession::run_recorder() {
+    constexpr std::chrono::milliseconds between{20};
+    for (bool is_last = false; !is_last;) {
+        is_last = recorder_stopping_;
+        {
+            const std::lock_guard lock(recorder_mutex_);
+            record_what_happened();
+            if (is_last && recorder_.is_recording()) {
+                try {
+                    recorder_.end(simulation_.unbinding());  // whose thread has ended
+                } catch (const LoadError& error) {
+                    recording_problem_ = error.what();
+                }
+            }
+        }
+        if (!is_last) std::this_thread::sleep_for(between);
+    }
+}
+
+void LiveSession::record_what_happened() {
+    if (journal_queue_.dropped() > 0) {
+        recorder_.lose();
+        if (recorder_.is_recording() && recording_problem_.empty())
+            recording_problem_ =
+                "servo ticks are missing: the machine was too busy to record them all, so a replay "
+                "will not be exact";
+    }
+    recorder_.note_overruns(overruns_);
+    journal_queue_.hand_to(recorder_);
+    for (const TrajectoryShot& shot : trajectory_queue_.take()) recorder_.add(shot);
+    if (std::string failure = recorder_.take_failure(); !failure.empty()) {
+        trajectory_queue_.end();
+        recording_problem_ = std::move(failure);
+    }
+}
+
+}  // namespace palpa
