@@ -30,7 +30,7 @@ bool has_lesson(const World& app) { return !app.resource<LessonState>().lesson.s
 bool has_playback(const World& app) { return frame_of(app).readout.playback.has_value(); }
 bool is_paused(const World& app) { return frame_of(app).readout.paused; }
 bool can_save(const World& app) { return static_cast<bool>(options_of(app).save); }
-// While an edit is under way its name is not in the history yet.
+// An edit that is under way is not in the history yet.
 bool can_undo(const World& app) {
     const Readout& readout = frame_of(app).readout;
     return !readout.undo.undo.empty() || !readout.edit_under_way.empty();

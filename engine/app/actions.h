@@ -55,7 +55,7 @@ bool is_possible(const World& app, const Action& action);
 void perform(World& app, const Action& action, By by = By::Panel);
 void perform(World& app, std::string_view id, By by = By::Panel);
 
-// In English.
+// The title of a menu, in English.
 const char* name_of(Menu menu) noexcept;
 
 // The name of a chord in the window's language: "Ctrl+Shift+Z"; empty without a key.

@@ -9,9 +9,9 @@ namespace palpa {
 bool can_choose_device(const World& app);
 // Takes the device that is wanted as soon as it is connected; call once a frame.
 void look_for_devices(World& app);
-// False if it cannot be used, which is told.
+// Returns false, after a message, if it cannot be used.
 bool choose_device(World& app, const std::string& name);
-// The next connected device; one that cannot be used is told and passed over.
+// Takes the next connected device that can be used; a message names those that cannot.
 void choose_next_device(World& app);
 
 // False if the tone stays off.

@@ -33,7 +33,7 @@ constexpr const Panel* panels[] = {
     &lesson_panel,     // the present step
     &time_line_panel,  // of a replay or a trajectory
     &select_panel,     // atoms by an expression
-    &messages_panel,   // all that was told
+    &messages_panel,   // all messages so far
     &keys_panel,       // keys and mouse
     &search_panel,     // every action and scene key
 };

@@ -48,12 +48,11 @@ struct Docks {
     ScreenArea picture;    // what they left at the last drawing, pixels
     std::vector<PanelRequest> requests;
 
-    // What they leave of a window of this size.
+    // The area that they leave of a window of this size.
     ScreenArea picture_area(float width, float height) const;
 };
 
-// With panels as list_docks had them; what a line of it does not name, or no longer is, is as
-// usual.
+// The docks with panels as list_docks had them; lines that no panel understands are ignored.
 Docks build_docks(std::span<const std::string> kept = {});
 // Lists what a person has changed: "left 240" (pixels at the usual size of text), "right folded",
 // "left unfolded", "plots open", "lesson closed".

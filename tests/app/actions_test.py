@@ -5,10 +5,10 @@ import re
 import shutil
 import subprocess
 import tempfile
-import time
 import unittest
 from pathlib import Path
 
+from window_case import WindowCase
 from window_test import PROGRAM, ROOT, Display
 
 # Menus in the bar at the usual size of text: their place, and their rows.
@@ -45,24 +45,10 @@ def as_xdotool(key):
     return modifiers[0].lower() + last
 
 
-class Actions(unittest.TestCase):
+class Actions(WindowCase):
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp())
         os.environ.update(SDL_AUDIODRIVER="disk", SDL_DISKAUDIOFILE=str(self.folder / "sound.raw"))
-
-    def tearDown(self):
-        if self.program.poll() is None:
-            self.program.kill()
-            self.program.communicate()
-        shutil.rmtree(self.folder)
-
-    def wait_until(self, is_so, what):
-        for _ in range(2400):
-            if is_so():
-                return
-            self.assertIsNone(self.program.poll(), "the program ended early, waiting for " + what)
-            time.sleep(0.025)
-        self.fail("waited in vain for " + what)
 
     def start(self, display, *options):
         shutil.copytree(ROOT / "scenes" / "dipeptide", self.folder / "dipeptide", dirs_exist_ok=True)
@@ -122,7 +108,7 @@ class Actions(unittest.TestCase):
             self.display.do("key", "Return")
 
     def check(self, action, way):
-        """Where the session has not said yet that the action is possible, once more."""
+        """Works the action; once more while the session has not said yet that it is possible."""
         name = action[0]
         expected = [("search", "key")] if way == "search" else []
         waits = name in BEFORE or name in AFTER  # for what its keys, or those of the one before, do
@@ -136,7 +122,6 @@ class Actions(unittest.TestCase):
             if len(self.done()) > len(expected):
                 break
             self.press(["Escape"])
-            time.sleep(0.1)
         self.assertEqual(self.done(), [*expected, (name, way)])
         self.press(AFTER.get(name, []))
 
@@ -147,7 +132,7 @@ class Actions(unittest.TestCase):
 
     def end(self):
         self.display.do("key", "ctrl+q")
-        _, err = self.program.communicate(timeout=120)
+        _, err = self.program.communicate()
         self.assertEqual(self.program.returncode, 0, err)
 
     def test_each_action_by_menu_key_and_search(self):
@@ -168,7 +153,7 @@ class Actions(unittest.TestCase):
             self.display.do("key", "ctrl+q")  # asks, for there are changes
             self.see()
             self.display.do("key", "q")
-            _, err = self.program.communicate(timeout=120)
+            _, err = self.program.communicate()
             problems = [line for line in err.splitlines() if not line.startswith("CRITICAL")]  # SDL
             self.assertEqual((self.program.returncode, problems), (0, []))
 
@@ -194,7 +179,7 @@ class Actions(unittest.TestCase):
                     if action[0] == "open":  # the start screen
                         self.see()
                         display.do("key", "ctrl+q")
-                    _, err = self.program.communicate(timeout=120)
+                    _, err = self.program.communicate()
                     self.assertEqual(self.program.returncode, 0, err)
 
 

@@ -47,7 +47,8 @@ TEST_CASE("the inspector removes a spring and a mark, and empties a hand", "[app
     CHECK(click_until_edit(screen).action == EditAction(ReleaseEdit{}));
 }
 
-TEST_CASE("what is gone gives way to the molecule in hand", "[app][panels]") {
+TEST_CASE("the inspector shows the molecule in hand once the other entity is removed",
+          "[app][panels]") {
     WindowScreen screen;
     const Inspectable held = InspectedMolecule{"moved"};
     CHECK(find_inspected(screen.app) == held);
@@ -117,7 +118,7 @@ TEST_CASE("a step of a lesson opens the panel that it teaches", "[app][panels]")
     CHECK(screen.app.resource<Docks>().front.at(Side::Right) == "coupling");
 }
 
-TEST_CASE("what was refused is told once, and again when it is refused again", "[app][panels]") {
+TEST_CASE("each refusal of an edit gives one message", "[app][panels]") {
     WindowScreen screen;
     const std::vector<std::string>& told = screen.app.resource<Notices>().history;
     screen.readout().problem = "no room";

@@ -9,27 +9,14 @@ import unittest
 from pathlib import Path
 
 from read_png import read_png
+from window_case import WindowCase
 from window_test import PROGRAM, ROOT, Display
 
 
-class StartScreen(unittest.TestCase):
+class StartScreen(WindowCase):
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp())
         self.shots = 0
-
-    def tearDown(self):
-        if self.program.poll() is None:
-            self.program.kill()
-            self.program.communicate()
-        shutil.rmtree(self.folder)
-
-    def wait_until(self, is_so, what):
-        for _ in range(1200):
-            if is_so():
-                return
-            self.assertIsNone(self.program.poll(), "the program ended early")
-            time.sleep(0.05)
-        self.fail("waited in vain for " + what)
 
     def start(self, display, *arguments):
         self.program = subprocess.Popen(
@@ -63,7 +50,7 @@ class StartScreen(unittest.TestCase):
 
     def end(self, display):
         display.do("key", "ctrl+q")
-        out, err = self.program.communicate(timeout=60)
+        out, err = self.program.communicate()
         self.assertEqual(self.program.returncode, 0, err)
         self.assertNotIn("Validation Error", out + err)
         return out

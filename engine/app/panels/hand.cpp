@@ -21,7 +21,7 @@
 namespace palpa {
 namespace {
 
-// On one axis the sign of a force says what it does; at rest only rounding is left of it.
+// The sign of a force on one axis says what it does; at rest it is rounding.
 const char* effect_of(bool on_axis, double force) {
     constexpr double rounding = 1e-6;
     if (!on_axis || std::abs(force) < rounding) return "";

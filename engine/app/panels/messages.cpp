@@ -1,4 +1,4 @@
-// The panel "Messages": all that was told, the newest below.
+// The panel "Messages": all messages so far, the newest below.
 #include "app/panels.h"
 #include "app/window_world.h"
 #include "core/translate.h"
