@@ -53,50 +53,6 @@ void write_into(const fs::path& path, std::string_view text) {
     write_all(stream, text, path);
 }
 
-// A whole file beside the one that it will become; gone unless moved there.
-class Draft {
-public:
-    explicit Draft(const fs::path& path) : path_(path) {
-        constexpr int most_drafts = 1000;  // of other programs, or left by one that was killed
-        std::error_code error;
-        for (int number = 0; number < most_drafts; ++number) {
-            draft_ = path;
-            draft_ += number == 0 ? ".draft" : fmt::format(".draft{}", number);
-            file_ = File(draft_, FileUse::Create, error);
-            if (error != std::errc::file_exists) break;
-        }
-        if (error) refuse_write(path, error);
-    }
-    Draft(const Draft&) = delete;
-    Draft& operator=(const Draft&) = delete;
-    ~Draft() {
-        std::error_code ignored;
-        file_.close(ignored);  // some systems remove no open file
-        fs::remove(draft_, ignored);
-    }
-
-    void write(std::string_view text) {
-        write_all(file_, text, path_);
-        close_all(file_, path_);
-    }
-
-    void move(Existing existing) const {
-        std::error_code error;
-        if (existing == Existing::Refuse) {
-            fs::create_hard_link(draft_, path_, error);  // which replaces nothing
-            if (!error) return;
-            if (fs::exists(status_of(path_))) throw LoadError({path_.string()}, is_there);
-            // A file system without hard links.
-        }
-        fs::rename(draft_, path_, error);
-        if (error) refuse_write(path_, error);
-    }
-
-private:
-    fs::path path_, draft_;
-    File file_;
-};
-
 std::string size_text(std::uintmax_t bytes) {
     return fmt::format("{:.1f} GiB", static_cast<double>(bytes) / (1 << 30));
 }
@@ -158,15 +114,16 @@ std::string read_text_file(const fs::path& path) {
 
 void write_text_file(const fs::path& path, std::string_view text, Existing existing) {
     if (is_stream(path)) return write_into(path, text);
-    Draft draft(path);
+    DraftFile draft(path);
     draft.write(text);
+    draft.close();
     draft.move(existing);
 }
 
 void write_text_files(std::span<const TextFile> files) {
-    std::deque<std::optional<Draft>> drafts;  // none for a stream, which is written last
+    std::deque<std::optional<DraftFile>> drafts;  // none for a stream, which is written last
     for (const TextFile& file : files) {
-        std::optional<Draft>& draft = drafts.emplace_back();
+        std::optional<DraftFile>& draft = drafts.emplace_back();
         if (is_stream(file.path)) continue;
         const fs::file_status status = status_of(file.path);
         if (fs::is_directory(status)) {
@@ -176,9 +133,10 @@ void write_text_files(std::span<const TextFile> files) {
             throw LoadError({file.path.string()}, is_there);
         }
         draft.emplace(file.path).write(file.text);
+        draft->close();
     }
     for (std::size_t i = 0; i < files.size(); ++i) {
-        if (const std::optional<Draft>& draft = drafts[i]) draft->move(files[i].existing);
+        if (const std::optional<DraftFile>& draft = drafts[i]) draft->move(files[i].existing);
     }
     for (std::size_t i = 0; i < files.size(); ++i) {
         if (!drafts[i]) write_into(files[i].path, files[i].text);
@@ -218,7 +176,7 @@ Existing check_output(const fs::path& path, std::string_view mark, bool overwrit
                 "was not written by this command and is not replaced; expected another name");
         }
     }
-    const Draft possible(path);
+    const DraftFile possible(path);
     return fs::exists(status) ? Existing::Replace : Existing::Refuse;
 }
 
@@ -249,6 +207,40 @@ NewFile::NewFile(fs::path path) : path_(std::move(path)) {
 void NewFile::write(std::string_view text) { write_all(file_, text, path_); }
 
 void NewFile::close() { close_all(file_, path_); }
+
+DraftFile::DraftFile(fs::path path) : path_(std::move(path)) {
+    constexpr int most_drafts = 1000;  // of other programs, or left by one that was killed
+    std::error_code error;
+    for (int number = 0; number < most_drafts; ++number) {
+        draft_ = path_;
+        draft_ += number == 0 ? ".draft" : fmt::format(".draft{}", number);
+        file_ = File(draft_, FileUse::Create, error);
+        if (error != std::errc::file_exists) break;
+    }
+    if (error) refuse_write(path_, error);
+}
+
+DraftFile::~DraftFile() {
+    std::error_code ignored;
+    file_.close(ignored);  // some systems remove no open file
+    fs::remove(draft_, ignored);
+}
+
+void DraftFile::write(std::string_view text) { write_all(file_, text, path_); }
+
+void DraftFile::close() { close_all(file_, path_); }
+
+void DraftFile::move(Existing existing) const {
+    std::error_code error;
+    if (existing == Existing::Refuse) {
+        fs::create_hard_link(draft_, path_, error);  // which replaces nothing
+        if (!error) return;
+        if (fs::exists(status_of(path_))) throw LoadError({path_.string()}, is_there);
+        // A file system without hard links.
+    }
+    fs::rename(draft_, path_, error);
+    if (error) refuse_write(path_, error);
+}
 
 FolderLock::FolderLock(const fs::path& folder) : folder_(folder) {
     if (!folder_.is_taken()) return;

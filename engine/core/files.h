@@ -71,6 +71,25 @@ private:
     File file_;
 };
 
+// A file that is written piece by piece beside its place, and takes the place once it is whole. Its
+// destructor removes what has not taken it. All functions throw LoadError.
+class DraftFile {
+public:
+    explicit DraftFile(std::filesystem::path path);
+    DraftFile(const DraftFile&) = delete;
+    DraftFile& operator=(const DraftFile&) = delete;
+    ~DraftFile();
+
+    void write(std::string_view text);
+    void close();  // throws if the system could not write everything
+    // Call after close().
+    void move(Existing existing = Existing::Refuse) const;
+
+private:
+    std::filesystem::path path_, draft_;
+    File file_;
+};
+
 // A lock on a folder: while it exists, another run of the program throws LoadError when it wants to
 // write into the same folder. The system releases the lock when the program ends.
 class FolderLock {

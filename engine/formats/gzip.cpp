@@ -1,15 +1,22 @@
 #include "formats/gzip.h"
 
-#include "core/files.h"
 #include "core/load_error.h"
 
 #include <fmt/format.h>
 #include <zlib.h>
 #include <algorithm>
 #include <limits>
+#include <system_error>
 
 namespace palpa {
 namespace {
+
+namespace fs = std::filesystem;
+
+// A piece takes some 20 ms.
+constexpr std::size_t piece_bytes = std::size_t{1} << 18;
+
+fs::path add_ending(fs::path path) { return path += ".gz"; }
 
 // zlib's state, ended with its scope.
 class Inflater {
@@ -53,7 +60,9 @@ private:
             state = inflate(&stream_, Z_NO_FLUSH);
             text.resize(before + room - stream_.avail_out);
             if (text.size() > most) {
-                fail(fmt::format("holds more than {} MiB; expected a structure file", most >> 20U));
+                fail(
+                    fmt::format("holds more than {} MiB when it is unpacked; expected at most that",
+                                most >> 20U));
             }
             if (state == Z_BUF_ERROR ||
                 (state == Z_OK && stream_.avail_in == 0 && stream_.avail_out > 0)) {
@@ -86,9 +95,88 @@ std::string unpack_gzip(std::string_view data, const std::string& file, std::siz
     return text;
 }
 
-std::string read_packed_text_file(const std::filesystem::path& path) {
+std::string read_packed_text_file(const fs::path& path, std::size_t most) {
     std::string data = read_text_file(path);
-    return is_gzip(data) ? unpack_gzip(data, path.string()) : data;
+    return is_gzip(data) ? unpack_gzip(data, path.string(), most) : data;
+}
+
+fs::path find_plain_or_packed(const fs::path& path) {
+    std::error_code error;
+    const fs::path packed = add_ending(path);
+    return !fs::exists(path, error) && fs::exists(packed, error) ? packed : path;
+}
+
+std::string read_recorded_file(const fs::path& path) {
+    return read_packed_text_file(find_plain_or_packed(path), most_file_bytes);
+}
+
+// ---- compressing -------------------------------------------------------------------------------
+
+class FilePacker::Deflater {
+public:
+    explicit Deflater(const fs::path& file) {
+        // Numbers have many short repetitions by chance: filtered, which leaves these alone,
+        // makes traces 10 % smaller.
+        constexpr int level = 6, gzip_window = 15 + 16, memory = 8;
+        if (deflateInit2(&stream_, level, Z_DEFLATED, gzip_window, memory, Z_FILTERED) != Z_OK)
+            throw LoadError({file.string()}, "cannot be compressed: not enough memory");
+    }
+    Deflater(const Deflater&) = delete;
+    Deflater& operator=(const Deflater&) = delete;
+    ~Deflater() { deflateEnd(&stream_); }
+
+    void begin(std::string_view piece) noexcept {
+        // zlib writes nothing there.
+        stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(piece.data()));
+        stream_.avail_in = static_cast<uInt>(piece.size());
+    }
+    // What fits of the piece; all of it is there once not all of `into` was needed.
+    std::string_view pack(std::vector<char>& into, bool is_last) noexcept {
+        stream_.next_out = reinterpret_cast<Bytef*>(into.data());
+        stream_.avail_out = static_cast<uInt>(into.size());
+        (void)deflate(&stream_, is_last ? Z_FINISH : Z_NO_FLUSH);
+        return {into.data(), into.size() - stream_.avail_out};
+    }
+
+private:
+    z_stream stream_{};
+};
+
+FilePacker::FilePacker(const fs::path& file)
+    : file_(file),
+      draft_(add_ending(file)),
+      deflater_(std::make_unique<Deflater>(file)),
+      piece_(piece_bytes),
+      packed_(piece_bytes) {
+    std::error_code error;
+    source_ = File(file, FileUse::ReadHere, error);
+    if (error) throw LoadError({file.string()}, "cannot be read: " + error.message());
+}
+
+FilePacker::~FilePacker() = default;
+
+bool FilePacker::pack_piece() {
+    std::error_code error;
+    const std::size_t got = source_.read(piece_, error);
+    if (error) throw LoadError({file_.string()}, "cannot be read: " + error.message());
+    read_ += got;
+    write_packed({piece_.data(), got}, got == 0);
+    if (got > 0) return true;
+    draft_.close();
+    source_.close(error);  // some systems remove no open file
+    draft_.move(Existing::Replace);
+    fs::remove(file_, error);
+    if (error) throw LoadError({file_.string()}, "cannot be removed: " + error.message());
+    return false;
+}
+
+void FilePacker::write_packed(std::string_view piece, bool is_last) {
+    deflater_->begin(piece);
+    for (bool is_full = true; is_full;) {
+        const std::string_view packed = deflater_->pack(packed_, is_last);
+        draft_.write(packed);
+        is_full = packed.size() == packed_.size();
+    }
 }
 
 }  // namespace palpa

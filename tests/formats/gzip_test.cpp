@@ -8,9 +8,12 @@
 #include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
+#include <fmt/format.h>
 #include <zlib.h>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cstddef>
+#include <random>
 #include <string>
 
 using namespace palpa;
@@ -32,6 +35,27 @@ std::string packed(const std::string& text) {
     data.erase(stream.total_out);
     deflateEnd(&stream);
     return data;
+}
+
+// By zlib's own reader.
+std::string read_by_zlib(const std::filesystem::path& file) {
+    std::string text;
+    gzFile stream = gzopen(file.string().c_str(), "rb");
+    REQUIRE(stream);
+    std::array<char, 4096> part{};
+    for (int got = 0; (got = gzread(stream, part.data(), part.size())) > 0;)
+        text.append(part.data(), static_cast<std::size_t>(got));
+    CHECK(gzclose(stream) == Z_OK);
+    return text;
+}
+
+// Rows that do not repeat themselves.
+std::string numbers(std::size_t bytes) {
+    std::mt19937_64 random;
+    std::string text;
+    while (text.size() < bytes)
+        text += fmt::format("{},{}\n", random(), static_cast<double>(random()) * 1e-3);
+    return text;
 }
 
 const std::string one_atom_line =
@@ -81,4 +105,48 @@ TEST_CASE("a compressed PSF file is read as the plain one", "[formats][gzip]") {
     const Connectivity plain = parse_psf(text, "w.psf");
     CHECK(packed_system.charge == plain.charge);
     CHECK(packed_system.bonds == plain.bonds);
+}
+
+TEST_CASE("a file is compressed piece by piece to what zlib reads back", "[formats][gzip]") {
+    const test::TemporaryFolder folder;
+    const std::string text =
+        GENERATE(std::string(), std::string("one line\n"), std::string(1 << 18, '0'),
+                 numbers(3'000'000), numbers(1'000'000) + std::string(5'000'000, ','));
+    const std::filesystem::path plain = folder.add_file("trace.csv", text),
+                                packed_file = folder.path() / "trace.csv.gz";
+    {
+        FilePacker packer(plain);
+        while (packer.pack_piece()) CHECK_FALSE(std::filesystem::exists(packed_file));
+        CHECK(packer.read_bytes() == text.size());
+    }
+
+    CHECK(list_folder(folder.path()) == std::vector{packed_file});
+    CHECK(read_by_zlib(packed_file) == text);
+    CHECK(read_recorded_file(plain) == text);
+    CHECK(find_plain_or_packed(plain) == packed_file);
+}
+
+TEST_CASE("a compression that ends early leaves the file alone", "[formats][gzip]") {
+    const test::TemporaryFolder folder;
+    const std::string text = numbers(2'000'000);
+    const std::filesystem::path plain = folder.add_file("trace.csv", text);
+    {
+        FilePacker packer(plain);
+        CHECK(packer.pack_piece());
+        CHECK(packer.pack_piece());
+    }
+    CHECK(list_folder(folder.path()) == std::vector{plain});
+    CHECK(read_text_file(plain) == text);
+}
+
+TEST_CASE("the plain file of a recording counts where both forms are there", "[formats][gzip]") {
+    const test::TemporaryFolder folder;
+    const std::filesystem::path plain = folder.path() / "trace.csv";
+    CHECK_THAT(load_error_of([&] { (void)read_recorded_file(plain); }),
+               Contains("trace.csv: no such file"));
+    (void)folder.add_file("trace.csv.gz", packed("packed").substr(0, 12));
+    CHECK_THAT(load_error_of([&] { (void)read_recorded_file(plain); }),
+               Contains("trace.csv.gz: is cut off"));
+    (void)folder.add_file("trace.csv", "plain");
+    CHECK(read_recorded_file(plain) == "plain");
 }
