@@ -4,6 +4,7 @@
 #include "core/load_error.h"
 #include "core/text.h"
 #include "devices/emulated_omni.h"
+#include "formats/gzip.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -185,8 +186,9 @@ std::vector<PlayedRow> read_script(const std::filesystem::path& file) {
 std::vector<PlayedRow> read_trace(const std::filesystem::path& recording) {
     std::error_code error;
     const bool is_folder = std::filesystem::is_directory(recording, error);
-    const std::filesystem::path file = is_folder ? recording / "trace.csv" : recording;
-    return parse_trace(read_text_file(file), file.string());
+    const std::filesystem::path file =
+        is_folder ? find_plain_or_packed(recording / "trace.csv") : recording;
+    return parse_trace(read_recorded_file(file), file.string());
 }
 
 PlayedHandle::PlayedHandle(PlayedHandleSettings settings)

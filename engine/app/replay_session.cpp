@@ -1,7 +1,7 @@
 #include "app/replay_session.h"
 
-#include "core/files.h"
 #include "core/load_error.h"
+#include "formats/gzip.h"
 #include "scene/find_scene.h"
 #include "simulation/resources.h"
 
@@ -23,8 +23,8 @@ constexpr std::chrono::milliseconds slice{10};
 constexpr double slice_ticks = 1e-3 * slice.count() * servo_rate_hz;
 
 Journal read_journal(const fs::path& folder, const SceneDescription& scene) {
-    const fs::path file = folder / journal_name;
-    Journal journal = parse_journal(read_text_file(file), file.string());
+    const fs::path file = find_plain_or_packed(folder / journal_name);
+    Journal journal = parse_journal(read_recorded_file(file), file.string());
     complete_caps(scene, journal);
     if (journal.ticks.empty())
         throw LoadError({file.string()}, "has no tick; expected a session that had begun");

@@ -200,8 +200,13 @@ bool is_structure(const fs::path& file) {
 
 bool is_topology(const fs::path& file) { return upper_case(file.extension().string()) == ".PSF"; }
 
+bool is_journal(const fs::path& file) {
+    const bool is_packed = upper_case(file.extension().string()) == ".GZ";
+    return (is_packed ? file.stem() : file.filename()) == journal_name;
+}
+
 bool can_be_opened(const fs::path& file) {
-    return is_structure(file) || is_topology(file) || file.filename() == journal_name ||
+    return is_structure(file) || is_topology(file) || is_journal(file) ||
            upper_case(file.extension().string()) == ".TOML";
 }
 

@@ -37,8 +37,9 @@ bool is_structure(const std::filesystem::path& file);
 // Whether it is a topology (.psf), which is opened with its coordinates.
 bool is_topology(const std::filesystem::path& file);
 
-// Of a recorded session of a window: the journal in its folder.
+// Of a recorded session of a window: the journal in its folder; compressed it is journal.txt.gz.
 inline constexpr std::string_view journal_name = "journal.txt";
+bool is_journal(const std::filesystem::path& file);
 
 // Whether a file of this name can be opened: a scene (.toml), a structure, a topology, or the
 // journal of a recorded session; and the endings of such files, in lower case, without .gz.

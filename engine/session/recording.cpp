@@ -6,6 +6,7 @@
 #include "core/text.h"
 #include "core/version.h"
 #include "field/processor.h"
+#include "formats/gzip.h"
 #include "render/picture.h"
 #include "scene/find_scene.h"
 #include "scene/read_scene.h"
@@ -254,7 +255,10 @@ std::vector<fs::path> list_own_folder(const fs::path& folder) {
 std::vector<fs::path> list_recorded(const fs::path& folder) {
     const std::string session = read_text_file(folder / "session.toml");
     std::vector<fs::path> files;
-    for (const char* const name : {"summary.json", "trace.csv", "journal.txt"}) {
+    // A draft is left of a program that was killed while it compressed.
+    for (const char* const name :
+         {"summary.json", "trace.csv", "trace.csv.gz", "trace.csv.gz.draft", "journal.txt",
+          "journal.txt.gz", "journal.txt.gz.draft"}) {
         const fs::path file = folder / name;
         std::error_code error;
         if (!is_there(file)) continue;
@@ -302,7 +306,7 @@ bool is_of_commands(const fs::path& folder) {
 
 bool has_journal(const fs::path& folder) {
     std::error_code error;
-    return fs::exists(folder / journal_name, error);
+    return fs::exists(find_plain_or_packed(folder / journal_name), error);
 }
 
 // Recordings from before 1.0 do not state theirs.

@@ -1,6 +1,6 @@
 // Writes a session to a folder: trace.csv, summary.json, session.toml and the scene's inputs; from
 // a window also journal.txt (session/journal.h); on request a trajectory
-// (session/trajectory_recorder.h).
+// (session/trajectory_recorder.h). session/pack_recording.h compresses what is long of it.
 #pragma once
 #include "core/file_versions.h"
 #include "core/files.h"

@@ -1,8 +1,8 @@
 #include "session/replay.h"
 
-#include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
+#include "formats/gzip.h"
 #include "session/recording.h"
 
 #include <fmt/format.h>
@@ -47,10 +47,11 @@ std::string choose_values(std::string_view row, std::span<const std::size_t> num
 
 TraceCheck::TraceCheck(const std::filesystem::path& folder, std::uint64_t ticks, std::int64_t every,
                        std::size_t hands)
-    : text_(read_text_file(folder / "trace.csv")), every_(every) {
+    : file_(find_plain_or_packed(folder / "trace.csv").string()),
+      text_(read_recorded_file(folder / "trace.csv")),
+      every_(every) {
     const auto step = static_cast<std::uint64_t>(every);
     whole_ = (ticks + step - 1) / step;
-    const std::string file = (folder / "trace.csv").string();
     std::string_view rest = text_;
     const auto take_line = [&]() -> std::optional<std::string_view> {
         const std::size_t end = rest.find('\n');
@@ -60,7 +61,7 @@ TraceCheck::TraceCheck(const std::filesystem::path& folder, std::uint64_t ticks,
         return line;
     };
     const std::optional<std::string_view> header = take_line();
-    if (!header) throw LoadError({file, 1}, "has no complete line; expected a recorded trace");
+    if (!header) throw LoadError({file_, 1}, "has no complete line; expected a recorded trace");
     columns_ = split_row(*header);
     recorded_columns_ = columns_.size();
     relaxes_ = *header == trace_header(hands, true);
@@ -70,7 +71,7 @@ TraceCheck::TraceCheck(const std::filesystem::path& folder, std::uint64_t ticks,
 
 // Those that recording and program have.
 void TraceCheck::choose_columns(const std::filesystem::path& folder, std::size_t hands) {
-    const TextPlace place{(folder / "trace.csv").string(), 1};
+    const TextPlace place{file_, 1};
     const std::vector<std::string_view> theirs = std::exchange(columns_, {});
     relaxes_ = std::ranges::find(theirs, "force_error_estimate_nN") != theirs.end();
     const std::string header = trace_header(hands, relaxes_);

@@ -24,11 +24,11 @@ struct TraceDifference {
 // Compares row by row to the last digit; equal rows have the same bits.
 class TraceCheck {
 public:
-    // Reads trace.csv of a recording of so many ticks whose trace keeps one row of `every`. What is
-    // behind the last whole line of one that was cut off does not count. Columns are found by name:
-    // of version 1 those that came later may lack. Throws LoadError if there is no trace, if it
-    // lacks another column, or has one that this program does not know and the recording is not of
-    // a newer minor version.
+    // Reads trace.csv (or trace.csv.gz) of a recording of so many ticks whose trace keeps one row
+    // of `every`. What is behind the last whole line of one that was cut off does not count.
+    // Columns are found by name: of version 1 those that came later may lack. Throws LoadError if
+    // there is no trace, if it lacks another column, or has one that this program does not know and
+    // the recording is not of a newer minor version.
     TraceCheck(const std::filesystem::path& folder, std::uint64_t ticks, std::int64_t every,
                std::size_t hands = 1);
 
@@ -36,6 +36,7 @@ public:
     void add(std::span<const ServoTick> ticks);  // of all hands
     void add(const ServoTick& tick) { add({&tick, 1}); }
 
+    const std::string& file() const noexcept { return file_; }  // the trace
     std::uint64_t recorded() const noexcept { return rows_.size(); }
     std::uint64_t compared() const noexcept { return compared_; }
     std::uint64_t different() const noexcept { return different_; }
@@ -54,7 +55,7 @@ private:
     void choose_columns(const std::filesystem::path& folder, std::size_t hands);
     void note(std::string_view recorded, std::string_view played);
 
-    std::string text_;
+    std::string file_, text_;
     std::vector<std::string_view> rows_, columns_;  // of `text_`; the columns that are compared
     // Their numbers in rows as recorded and as played; empty where all are compared.
     std::vector<std::size_t> recorded_, played_;

@@ -1,6 +1,7 @@
-// Any text is a journal or a LoadError; a journal reads the same once written, and a session of
-// water plays it or refuses it.
+// Any text, plain or compressed, is a journal or a LoadError; a journal reads the same once
+// written, and a session of water plays it or refuses it.
 #include "core/load_error.h"
+#include "formats/gzip.h"
 #include "scene/read_scene.h"
 #include "session/journal.h"
 #include "session/play_journal.h"
@@ -67,8 +68,14 @@ void play(const Journal& journal) {
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const std::optional<Journal> journal =
-        read_or_refuse({reinterpret_cast<const char*>(data), size});
+    constexpr std::size_t most = 1 << 16;
+    std::string text(reinterpret_cast<const char*>(data), size);
+    if (is_gzip(text)) {
+        const auto unpacked = test::or_refused([&] { return unpack_gzip(text, "fuzz.gz", most); });
+        if (!unpacked) return 0;
+        text = *unpacked;
+    }
+    const std::optional<Journal> journal = read_or_refuse(text);
     if (!journal) return 0;
     const std::string written = formatted(*journal);
     const std::optional<Journal> back = read_or_refuse(written);

@@ -1,3 +1,5 @@
+#include "core/files.h"
+#include "session/pack_recording.h"
 #include "session/session_recorder.h"
 
 #include "tests/support/load_error_of.h"
@@ -11,6 +13,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
 using namespace palpa;
 
@@ -108,4 +111,23 @@ TEST_CASE("a recording that fills the disk ends and says so, and the session is 
     play_ten(recorder);
     recorder.end();
     CHECK(journal_in(folder.path() / "second") == undisturbed_journal(folder, tens));
+}
+
+TEST_CASE("a recording that a full disk keeps from being compressed stays as it is",
+          "[session][recording]") {
+    const test::TemporaryFolder folder;
+    SessionRecorder recorder = new_recorder();
+    const std::filesystem::path recording = folder.path() / "recording";
+    recorder.begin(recording, false);
+    for (int k = 0; k < 300; ++k) play_ten(recorder);
+    recorder.end();
+    const std::vector<std::filesystem::path> files = list_folder(recording);
+    {
+        const FullDisk full(1 << 7);
+        CHECK_THAT(test::load_error_of([&] { pack_recording(recording); }),
+                   Catch::Contains(".gz") && Catch::Contains("written"));
+    }
+    CHECK(list_folder(recording) == files);
+    pack_recording(recording);  // with room again
+    CHECK_FALSE(std::filesystem::exists(recording / "trace.csv"));
 }

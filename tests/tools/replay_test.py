@@ -1,4 +1,5 @@
 """palpa replay --verify from outside: whole recordings, cut ones, and ones that were tampered with."""
+import gzip
 import json
 import os
 import signal
@@ -45,6 +46,44 @@ class Replay(unittest.TestCase):
                 self.assertEqual(code, 0)
                 self.assertEqual(report["different"], 0)
                 self.assertEqual(report["compared"], len(self.trace.read_text().splitlines()) - 1)
+
+    def test_a_compressed_recording_is_found_again_and_a_damaged_one_is_named(self):
+        self.record("--seconds", "1", "--compress", WATER)
+        packed = self.trace.with_name("trace.csv.gz")
+        self.assertEqual(sorted(file.name for file in self.folder.glob("trace*")), ["trace.csv.gz"])
+        whole = packed.read_bytes()
+        text = gzip.decompress(whole)
+        code, report = self.verify()
+        self.assertEqual((code, report["different"]), (0, 0))
+        self.assertEqual(report["compared"], text.count(b"\n") - 1)
+        plain = self.folder.with_name("plain")
+        for arguments in ((WATER, "--seconds", "1"), (self.folder / "session.toml",),
+                          (WATER, "--seconds", "1", "--device", f"replay:{self.folder}")):
+            recorded = palpa("run", *arguments, "--headless", "--overwrite", "--record", plain)
+            self.assertEqual(recorded.returncode, 0, recorded.stderr)
+            if "--device" not in arguments:
+                self.assertEqual((plain / "trace.csv").read_bytes(), text)
+        for data, said in ((whole[:len(whole) // 2], "is cut off"), (whole[:2], "trace.csv.gz"),
+                           (whole[:1000] + b"?" * 100 + whole[1100:], "is damaged"),
+                           (gzip.compress(b"0" * (1 << 20)) * 1025, "holds more than 1024 MiB")):
+            with self.subTest(said=said):
+                packed.write_bytes(data)
+                for arguments in (("replay", self.folder, "--verify"),
+                                  ("run", WATER, "--headless", "--device", f"replay:{self.folder}")):
+                    refused = palpa(*arguments)
+                    self.assertEqual(refused.returncode, 2, refused.stdout)
+                    self.assertIn("trace.csv.gz", refused.stderr)
+                    self.assertIn(said, refused.stderr)
+        packed.write_bytes(whole)
+        self.record("--seconds", "0.1", WATER)  # in its place
+        self.assertFalse(packed.exists())
+        self.assertEqual(self.verify()[0], 0)
+
+    def test_only_a_recording_is_compressed(self):
+        for arguments in (("run", WATER, "--headless", "--compress"), ("run", WATER, "--compress")):
+            refused = palpa(*arguments)
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn("--compress: needs a recording; expected --record FOLDER with it", refused.stderr)
 
     def test_a_recording_is_played_with_its_own_kernels_unless_others_are_chosen(self):
         best = palpa("--version").stdout.partition("processor  ")[2].split()[0]

@@ -1,12 +1,19 @@
 """The shell tools and the documentation: help, usage, the figure, the list of keys."""
+import contextlib
+import gzip
+import io
 import math
 import os
 import re
 import struct
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "support"))
+from recorded_files import open_recorded  # noqa: E402
 
 PROGRAM = os.environ["PALPA_PROGRAM"]
 ROOT = Path(os.environ["PALPA_ROOT"])
@@ -39,6 +46,25 @@ class Scripts(unittest.TestCase):
             self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
             self.assertEqual(struct.unpack(">II", data[16:24]), (1200, 480))
             self.assertEqual(run(ROOT / "tools" / "scripts" / "plot_stroke", folder, image).returncode, 2)
+            # The same from the compressed recording, and a sentence where that is cut off.
+            packed = recording / "trace.csv.gz"
+            with open_recorded(recording / "trace.csv") as file:
+                text = file.read()
+            packed.write_bytes(gzip.compress((recording / "trace.csv").read_bytes()))
+            (recording / "trace.csv").unlink()
+            with open_recorded(recording / "trace.csv") as file:
+                self.assertEqual(file.read(), text)
+            result = run(ROOT / "tools" / "scripts" / "plot_stroke", recording, image)
+            self.assertEqual((result.returncode, image.read_bytes()), (0, data), result.stderr)
+            packed.write_bytes(packed.read_bytes()[:-1000])
+            result = run(ROOT / "tools" / "scripts" / "plot_stroke", recording, image)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("trace.csv.gz: is cut off or damaged", result.stderr)
+            with self.assertRaises(SystemExit) as ended, contextlib.redirect_stderr(io.StringIO()) as said:
+                with open_recorded(recording / "trace.csv") as file:
+                    file.read()
+            self.assertEqual(ended.exception.code, 2)
+            self.assertIn("trace.csv.gz: is cut off or damaged", said.getvalue())
 
     def test_a_bilayer_has_bonds_of_their_length_and_natural_lipids(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -5,7 +5,9 @@
 #include "core/text.h"
 #include "devices/emulated_omni.h"
 #include "experiments/emulated_hand.h"
+#include "formats/gzip.h"
 #include "loading/load.h"
+#include "scene/find_scene.h"
 #include "session/journal.h"
 #include "session/play_journal.h"
 #include "session/recording.h"
@@ -135,21 +137,20 @@ int report(const TraceCheck& check, const RecordedTime& time, bool json) {
     return check.different() == 0 && check.not_finite() == 0 && is_whole ? 0 : 1;
 }
 
-void check_has_rows(const TraceCheck& check, const std::filesystem::path& folder) {
+void check_has_rows(const TraceCheck& check) {
     if (check.recorded() > 0) return;
-    throw LoadError({(folder / "trace.csv").string(), 2},
-                    "has no rows; expected a recording with at least one row");
+    throw LoadError({check.file(), 2}, "has no rows; expected a recording with at least one row");
 }
 
 // What people did in a window.
 int replay_journal(const ReplayOptions& options, const SceneDescription& scene) {
-    const std::filesystem::path file = options.recording / "journal.txt";
-    Journal journal = parse_journal(read_text_file(file), file.string());
+    const std::filesystem::path file = find_plain_or_packed(options.recording / journal_name);
+    Journal journal = parse_journal(read_recorded_file(file), file.string());
     complete_caps(scene, journal);
     const std::size_t recorded =
         journal.ticks.size() - journal.first_recorded.value_or(journal.ticks.size());
     TraceCheck check(options.recording, recorded, scene.every, journal.devices.size());
-    check_has_rows(check, options.recording);
+    check_has_rows(check);
     print_notes(scene.notes);
     print_notes(journal.notes);
     print_notes(check.notes());
@@ -186,7 +187,7 @@ int replay_command(const ReplayOptions& options) {
     check_device(options.recording);
     const std::size_t hands = scene.hands.size();
     TraceCheck check(options.recording, count_ticks(scene), scene.every, hands);
-    check_has_rows(check, options.recording);
+    check_has_rows(check);
     print_notes(scene.notes);
     print_notes(check.notes());
     // One that was cut off is played as far as it goes.

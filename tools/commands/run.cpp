@@ -10,6 +10,7 @@
 #include "loading/load.h"
 #include "scene/read_scene.h"
 #include "session/lesson_meter.h"
+#include "session/pack_recording.h"
 #include "session/recording.h"
 #include "session/run_headless.h"
 #include "session/statistics_file.h"
@@ -30,6 +31,7 @@
 
 #include <fmt/format.h>
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -98,6 +100,9 @@ void check_options(const RunOptions& options) {
         throw LoadError({"--json"},
                         "cannot be combined with --commands, because both write to standard "
                         "output; expected one of them");
+    }
+    if (options.compresses && !options.record) {
+        throw LoadError({"--compress"}, "needs a recording; expected --record FOLDER with it");
     }
     if (!options.headless) return check_window_options(options);
     if (options.record) check_record_folder(*options.record, options.overwrites);
@@ -171,6 +176,17 @@ std::vector<std::unique_ptr<Device>> open_hands(const SceneDescription& scene, c
     return devices;
 }
 
+// A recording that cannot be compressed is whole, and a warning says so.
+void compress(const std::filesystem::path& recording, ProgressLine& progress) {
+    try {
+        pack_recording(recording, progress.shares("compressing"));
+    } catch (const LoadError& error) {
+        progress.wipe();
+        fmt::print(stderr, "warning: the recording is not compressed: {}\n", error.what());
+    }
+    progress.wipe();
+}
+
 // In lockstep, without a window.
 int run_without_window(SceneDescription scene, World& world,
                        std::span<const std::unique_ptr<Device>> devices, const RunOptions& options,
@@ -238,6 +254,8 @@ int run_without_window(SceneDescription scene, World& world,
         scene.seconds = static_cast<double>(summary.ticks) / servo_rate_hz;
     print_warnings(std::span(summary.warnings).subspan(warnings.size()));
     if (recording) print_notes(recording->take_notes());
+    recording.reset();
+    if (options.compresses) compress(*options.record, progress);
     if (options.json) {
         fmt::print("{}", format_summary(scene, summary));
     } else if (!scripted) {
@@ -377,6 +395,8 @@ void add_headless_options(CLI::App& run, RunOptions& options) {
                    "energy")
         ->type_name("FILE")
         ->group("With and without a window");
+    run.add_flag("--compress", options.compresses,
+                 "compress the recording's trace.csv to trace.csv.gz, as a window always does");
     run.add_option(
            "--fps", options.frames_per_second,
            "add pictures frames/0000.png ... to the recording, this many per simulated second")

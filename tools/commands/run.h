@@ -23,6 +23,7 @@ struct RunOptions {
     std::uint32_t frame_width = 640, frame_height = 360;
     std::optional<double> trajectory_fps;  // frames a simulated second; nothing: as usual
     bool trajectory_xtc = false;           // as XTC too
+    bool compresses = false;               // the recording of a run without a window
     std::optional<std::filesystem::path> trajectory;  // of another program, to be played
     double trajectory_speed = 25;                     // frames a second; 0: paused
     std::size_t trajectory_frame = 1;                 // the first that is shown, from 1

@@ -97,7 +97,7 @@ std::optional<fs::path> find_recording(const std::vector<fs::path>& files) {
     if (files.size() != 1) return std::nullopt;
     std::error_code error;
     if (fs::is_directory(files[0], error) && has_journal(files[0])) return files[0];
-    if (files[0].filename() != journal_name) return std::nullopt;
+    if (!is_journal(files[0])) return std::nullopt;
     return fs::absolute(files[0], error).parent_path();
 }
 
