@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <deque>
 #include <map>
+#include <variant>
 #include <vector>
 
 namespace palpa {
@@ -71,8 +72,10 @@ private:
 
 class JournalPlayer::Player {
 public:
-    Player(const SceneDescription& scene, const Journal& journal, const StageFunction& on_stage)
+    Player(const SceneDescription& scene, const Journal& journal, const StageFunction& on_stage,
+           const StepsFunction& on_step)
         : journal_(journal),
+          on_step_(on_step),
           posts_(journal.devices.size()),
           simulation_(scene, journal.devices, posts_, {}, on_stage),
           servos_(journal.devices.size()),
@@ -125,6 +128,7 @@ private:
         for (std::size_t slot = 0; slot < poses.size(); ++slot)
             poses[slot] = find_pose(slot, played.poses[slot]);
         simulation_.play(played.event, poses);
+        if (on_step_ && std::holds_alternative<StepEvent>(played.event)) on_step_(simulation_);
     }
 
     // Events never go back to older ones.
@@ -139,6 +143,7 @@ private:
     }
 
     const Journal& journal_;
+    const StepsFunction on_step_;
     KeptPosts posts_;
     LiveSimulation simulation_;
     ServoBank servos_;
@@ -148,11 +153,11 @@ private:
 };
 
 JournalPlayer::JournalPlayer(const SceneDescription& scene, const Journal& journal,
-                             const StageFunction& on_stage) {
+                             const StageFunction& on_stage, const StepsFunction& on_step) {
     const std::size_t hands = scene.hands.size();
     if (journal.devices.size() > hands)
         fail(fmt::format("moves {} hands, but the scene has {}", journal.devices.size(), hands));
-    player_ = std::make_unique<Player>(scene, journal, on_stage);
+    player_ = std::make_unique<Player>(scene, journal, on_stage, on_step);
 }
 
 JournalPlayer::JournalPlayer(JournalPlayer&&) noexcept = default;
@@ -166,12 +171,17 @@ std::span<const LiveTick> JournalPlayer::play_tick() { return player_->play_tick
 const LiveSimulation& JournalPlayer::simulation() const noexcept { return player_->simulation(); }
 
 void play_journal(const SceneDescription& scene, const Journal& journal,
-                  const LiveTicksFunction& on_ticks, const ProgressFunction& progress) {
-    JournalPlayer player(scene, journal);
+                  const LiveTicksFunction& on_ticks, const ProgressFunction& progress,
+                  const StepsFunction& on_step) {
     const std::size_t first = journal.first_recorded.value_or(journal.ticks.size());
+    bool is_recorded = first == 0;
+    JournalPlayer player(scene, journal, {}, [&](const LiveSimulation& simulation) {
+        if (is_recorded && on_step) on_step(simulation);
+    });
     constexpr std::size_t between_progress = 100;
     while (!player.is_over()) {
         const std::size_t tick = player.next_tick();
+        is_recorded = tick >= first;
         const std::span<const LiveTick> ticks = player.play_tick();
         if (tick >= first) on_ticks(ticks);
         if (progress && tick % between_progress == 0)

@@ -13,13 +13,17 @@
 
 namespace palpa {
 
+// Gets the simulation after each step.
+using StepsFunction = std::function<void(const LiveSimulation&)>;
+
 // Plays a session from its first moment, tick by tick. The journal must outlive it.
 class JournalPlayer {
 public:
     // Loads the scene. Throws LoadError where it cannot be loaded, or where the journal is not one
     // of it.
+    // `on_step`: called after every step of the simulation.
     JournalPlayer(const SceneDescription& scene, const Journal& journal,
-                  const StageFunction& on_stage = {});
+                  const StageFunction& on_stage = {}, const StepsFunction& on_step = {});
     JournalPlayer(JournalPlayer&&) noexcept;
     JournalPlayer& operator=(JournalPlayer&&) noexcept;
     ~JournalPlayer();
@@ -44,9 +48,11 @@ private:
 using LiveTicksFunction = std::function<void(std::span<const LiveTick>)>;
 
 // Plays the session from its first moment; `on_ticks` gets the ticks of all hands from the
-// beginning of the recording. Throws LoadError if the scene cannot be loaded, or if the journal
-// does not belong to it, that is, uses contact models, orders or poses that do not exist.
+// beginning of the recording, and `on_step` the steps from there. Throws LoadError if the scene
+// cannot be loaded, or if the journal does not belong to it, that is, uses contact models, orders
+// or poses that do not exist.
 void play_journal(const SceneDescription& scene, const Journal& journal,
-                  const LiveTicksFunction& on_ticks, const ProgressFunction& progress = {});
+                  const LiveTicksFunction& on_ticks, const ProgressFunction& progress = {},
+                  const StepsFunction& on_step = {});
 
 }  // namespace palpa

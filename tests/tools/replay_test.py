@@ -79,11 +79,15 @@ class Replay(unittest.TestCase):
         self.assertFalse(packed.exists())
         self.assertEqual(self.verify()[0], 0)
 
-    def test_only_a_recording_is_compressed(self):
+    def test_what_has_no_recording_or_no_journal_is_refused(self):
         for arguments in (("run", WATER, "--headless", "--compress"), ("run", WATER, "--compress")):
             refused = palpa(*arguments)
             self.assertEqual(refused.returncode, 2)
             self.assertIn("--compress: needs a recording; expected --record FOLDER with it", refused.stderr)
+        self.record("--seconds", "0.1", WATER)
+        refused = palpa("replay", self.folder, "--trajectory-fps", "25")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("has no journal", refused.stderr)
 
     def test_a_recording_is_played_with_its_own_kernels_unless_others_are_chosen(self):
         best = palpa("--version").stdout.partition("processor  ")[2].split()[0]

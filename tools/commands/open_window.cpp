@@ -10,6 +10,7 @@
 #include "core/shell_word.h"
 #include "core/translate.h"
 #include "experiments/emulated_hand.h"
+#include "formats/gzip.h"
 #include "haptics/hand.h"
 #include "loading/load.h"
 #include "render/picture.h"
@@ -228,7 +229,7 @@ std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
          .record = options.record,
          .statistics = options.statistics,
          .overwrites = options.overwrites,
-         .trajectory = trajectory_settings(options),
+         .trajectory = trajectory_settings(options, !scene.engine),
          .playback = playback_choice(options),
          .pads = &devices.pads(),
          .devices = options.play ? DeviceMenu() : devices.menu(),
@@ -265,7 +266,8 @@ std::optional<NextScreen> show_recording(WindowShell& shell, PreferencesFile& pr
     }
     const RecordedKernels kernels(folder);
     RecordedDevice first({.name = "recorded session"}), second({.name = "recorded session"});
-    if (preferences.can_keep()) remember_scene(folder / journal_name, preferences);
+    if (preferences.can_keep())
+        remember_scene(find_plain_or_packed(folder / journal_name), preferences);
     ViewSettings view;
     const bool is_loaded = shell.work(
         format_translated("Opening {}", scene.title), [&](const StageFunction& on_stage) {

@@ -13,6 +13,7 @@
 #include "session/recording.h"
 #include "session/replay.h"
 #include "session/run_headless.h"
+#include "session/trajectory_recorder.h"
 #include "simulation/grip_queries.h"
 #include "tools/commands/command.h"
 #include "tools/commands/kernels.h"
@@ -26,6 +27,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <system_error>
@@ -142,6 +144,42 @@ void check_has_rows(const TraceCheck& check) {
     throw LoadError({check.file(), 2}, "has no rows; expected a recording with at least one row");
 }
 
+// Writes the atoms of a session into the folder of its recording, as a run does that records them.
+class AtomsWriter {
+public:
+    explicit AtomsWriter(const ReplayOptions& options)
+        : lock_(options.recording),
+          sampler_(*options.trajectory_fps),
+          files_(options.recording, {.per_second = *options.trajectory_fps,
+                                     .writes_xtc = options.trajectory_xtc,
+                                     .most_bytes = std::nullopt}) {
+        for (const char* const name : {"trajectory.dcd", "trajectory.xtc", "system.psf"}) {
+            std::error_code error;
+            const std::filesystem::path file = options.recording / name;
+            if (std::filesystem::exists(file, error))
+                throw LoadError({file.string()}, "already exists; expected a recording without it");
+        }
+    }
+
+    void add(const LiveSimulation& simulation) {
+        const World& world = simulation.world();
+        if (const auto shot = sampler_.take(world, time_s_, simulation.edition()))
+            files_.add(*shot);
+        time_s_ += world.resource<Clock>().period_s;
+    }
+
+    void close() {
+        files_.close();
+        print_notes(files_.take_notes());
+    }
+
+private:
+    FolderLock lock_;
+    TrajectorySampler sampler_;
+    TrajectoryFiles files_;
+    double time_s_ = 0;
+};
+
 // What people did in a window.
 int replay_journal(const ReplayOptions& options, const SceneDescription& scene) {
     const std::filesystem::path file = find_plain_or_packed(options.recording / journal_name);
@@ -154,6 +192,12 @@ int replay_journal(const ReplayOptions& options, const SceneDescription& scene) 
     print_notes(scene.notes);
     print_notes(journal.notes);
     print_notes(check.notes());
+    std::optional<AtomsWriter> atoms;
+    StepsFunction on_step;
+    if (options.trajectory_fps) {
+        atoms.emplace(options);
+        on_step = [&](const LiveSimulation& simulation) { atoms->add(simulation); };
+    }
     ProgressLine progress(!options.json);
     std::vector<ServoTick> played(journal.devices.size());
     play_journal(
@@ -162,8 +206,9 @@ int replay_journal(const ReplayOptions& options, const SceneDescription& scene) 
             std::ranges::transform(ticks, played.begin(), &LiveTick::tick);
             check.add(played);
         },
-        progress.shares("playing"));
+        progress.shares("playing"), on_step);
     progress.wipe();
+    if (atoms) atoms->close();
     const double recorded_s = static_cast<double>(recorded) * servo_tick_s;
     return report(check, {recorded_s, recorded_s}, options.json);
 }
@@ -175,6 +220,10 @@ int replay_command(const ReplayOptions& options) {
     if (options.window) return open_screens({options.recording});
     const RecordedKernels kernels(options.recording);
     if (has_journal(options.recording)) return replay_journal(options, scene);
+    if (options.trajectory_fps)
+        throw LoadError({options.recording.string()},
+                        "has no journal, so it was recorded without a window; expected 'palpa run "
+                        "FOLDER/session.toml --headless --record NEW_FOLDER --trajectory-fps N'");
     check_no_client_pulled(options.recording);
     if (!options.verify) {
         RunOptions run;
@@ -213,14 +262,23 @@ void add_replay(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& replay = *program.add_subcommand(
         "replay", "Replay a recorded session; --verify checks that every digit is the same");
     ReplayOptions& options = own_options<ReplayOptions>(replay, chosen, replay_command);
-    describe(replay, {"palpa replay recordings/water --verify",
-                      "palpa replay recordings/session --window"});
+    describe(replay,
+             {"palpa replay recordings/water --verify", "palpa replay recordings/session --window",
+              "palpa replay recordings/session --trajectory-fps 25"});
     replay.add_option("recording", options.recording, "folder of palpa run --record")->required();
     replay.add_flag("--window", options.window,
                     "in a window, where a recorded session of a window can be stopped and looked "
                     "at; every row is compared there too");
     replay.add_flag("--verify", options.verify,
                     "compare every row of the trace with the replay; exit code 1 if one differs");
+    CLI::Option* const fps =
+        replay
+            .add_option("--trajectory-fps", options.trajectory_fps,
+                        "of a window's recording: add trajectory.dcd with system.psf to its "
+                        "folder, this many frames per simulated second")
+            ->check(in_range(0.01, 1000.0));
+    replay.add_flag("--trajectory-xtc", options.trajectory_xtc, "also add trajectory.xtc")
+        ->needs(fps);
     replay.add_flag("--json", options.json, "print the result as JSON");
 }
 

@@ -1,6 +1,7 @@
 // palpa replay: a recorded session played again, and held against what was recorded.
 #pragma once
 #include <filesystem>
+#include <optional>
 
 namespace palpa {
 
@@ -9,6 +10,8 @@ struct ReplayOptions {
     bool verify = false;              // else one of the emulated hand is only played
     bool json = false;
     bool window = false;
+    std::optional<double> trajectory_fps;  // writes the atoms of a window's recording
+    bool trajectory_xtc = false;           // as XTC too
 };
 
 // Throws LoadError on bad input. Returns the exit code: 1 where a force or anything else that was

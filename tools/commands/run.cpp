@@ -65,8 +65,9 @@ void check_headless(const char* option, const std::string& device) {
 
 }  // namespace
 
-TrajectorySettings trajectory_settings(const RunOptions& options) {
+TrajectorySettings trajectory_settings(const RunOptions& options, bool can_be_replayed) {
     TrajectorySettings settings{.writes_xtc = options.trajectory_xtc};
+    if (can_be_replayed && !options.trajectory_xtc) settings.per_second = 0;
     if (!options.trajectory_fps) return settings;
     settings.per_second = *options.trajectory_fps;
     settings.most_bytes.reset();  // who asks gets all of it
@@ -385,7 +386,8 @@ void add_headless_options(CLI::App& run, RunOptions& options) {
     CLI::Option* const record =
         run.add_option("--record", options.record,
                        "record into this folder: trace.csv, summary.json, session.toml, "
-                       "trajectory.dcd with system.psf, frames; with a window also journal.txt")
+                       "trajectory.dcd with system.psf, frames; with a window trace.csv.gz and "
+                       "journal.txt.gz")
             ->type_name("FOLDER")
             ->group("With and without a window");
     add_overwrite_flag(run, options.overwrites);
@@ -418,7 +420,8 @@ void add_headless_options(CLI::App& run, RunOptions& options) {
         ->group("With and without a window");
     run.add_option("--trajectory-fps", options.trajectory_fps,
                    "frames of the recording's trajectory.dcd per simulated second, 0 for none "
-                   "(default 25, up to 256 MiB)")
+                   "(default 25, up to 256 MiB; with a window none, since 'palpa replay FOLDER "
+                   "--trajectory-fps 25' makes them)")
         ->check(in_range(0.0, 1000.0))
         ->group("With and without a window");
     run.add_flag("--trajectory-xtc", options.trajectory_xtc, "also write trajectory.xtc")

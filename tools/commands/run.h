@@ -46,8 +46,9 @@ struct RunOptions {
     ServeChoice serve;
 };
 
-// Of the recordings of a run.
-TrajectorySettings trajectory_settings(const RunOptions& options);
+// Of the recordings of a run. `can_be_replayed`: the recording's journal has all that moves the
+// atoms, so that a replay makes the trajectory, which is written only on request.
+TrajectorySettings trajectory_settings(const RunOptions& options, bool can_be_replayed = false);
 
 // Of another program, to be played.
 std::optional<PlaybackChoice> playback_choice(const RunOptions& options);
