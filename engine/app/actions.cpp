@@ -38,7 +38,7 @@ bool can_undo(const World& app) {
 bool can_redo(const World& app) { return !frame_of(app).readout.undo.redo.empty(); }
 bool has_selection(const World& app) { return !app.resource<SelectionState>().atoms.empty(); }
 bool has_views(const World& app) { return !app.resource<SavedViewState>().all.empty(); }
-bool is_recording(const World& app) { return session_of(app).recorded_s().has_value(); }
+bool is_recording(const World& app) { return session_of(app).recording().has_value(); }
 bool is_filming(const World& app) { return app.resource<Recorder>().film != nullptr; }
 bool sounds(const World& app) { return app.resource<ForceTone>().speaker != nullptr; }
 bool looks_at_held(const World& app) { return app.resource<CameraState>().looks_at_held; }
@@ -125,7 +125,7 @@ constexpr auto actions = std::to_array<Action>({
     {"export", for_translation("Export coordinates..."), for_translation("Saves coordinates or readings for other programs."), Menu::File, {{{Key::E}}}, "", ask_for_export},
     {"screenshot", for_translation("Screenshot"), for_translation("Saves a picture of the window."), Menu::File, {{{Key::F12}}}, icon_camera, take_screenshot, nullptr, nullptr, true, true},
     {"film", for_translation("Film"), for_translation("Starts or ends a film of the window."), Menu::File, {{{Key::M}}}, "", film_or_end, nullptr, is_filming},
-    {"record", for_translation("Record the session"), for_translation("Starts or ends a recording that can be played again to the last digit."), Menu::File, {{{Key::F9}}}, icon_record, record_or_end, nullptr, is_recording},
+    {"record", for_translation("Record the session"), for_translation("Starts or ends a recording that can be played again to the last digit."), Menu::File, {{{Key::F9}}}, icon_record, record_or_end, nullptr, is_recording, false, false, describe_recording},
     {"quit", for_translation("Quit"), for_translation("Closes the window; asks if something is not saved."), Menu::File, {{{Key::Q, true}}}, "", ask_to_quit, nullptr, nullptr, true},
     // ---- Edit
     {"undo", for_translation("Undo"), for_translation("Undoes a change, a grip or a pull."), Menu::Edit, {{{Key::Z, true}}}, icon_undo, undo, can_undo},

@@ -35,6 +35,7 @@ struct Action {
     bool (*is_on)(const World& app) = nullptr;        // of a switch; null: it is none
     bool in_study = false;                            // also for a participant of a study
     bool over_dialogs = false;                        // also while a dialog has the keys
+    std::string (*state)(const World&) = nullptr;     // beside its icon; null or empty: nothing
 };
 
 // All of them, in the order of their menus.

@@ -4,6 +4,7 @@
 #pragma once
 #include "app/live_clock.h"
 #include "app/live_frame.h"
+#include "app/recording_meter.h"
 #include "app/window_session.h"
 #include "core/ring.h"
 #include "core/stage.h"
@@ -14,6 +15,7 @@
 #include "session/frame_server.h"
 #include "session/journal_queue.h"
 #include "session/live_simulation.h"
+#include "session/pack_recording.h"
 #include "session/servo_bank.h"
 #include "session/session_recorder.h"
 
@@ -82,7 +84,10 @@ public:
     void end_recording() override;
     // A row a second into this file (session/statistics_file.h). Throws LoadError.
     void write_statistics(const std::filesystem::path& path, bool overwrites = false);
-    std::optional<double> recorded_s() override;
+    std::optional<RecordingState> recording() override;
+    std::optional<double> packed_share() override;
+    std::vector<EndedRecording> take_ended() override;
+    void stop_packing() override;
     std::vector<std::string> take_recording_notes() override;
 
 private:
@@ -104,6 +109,9 @@ private:
     void change_device(const DeviceEvent& change, const LiveDevice& device);
     void post_frame_if_wanted();
     void record_what_happened();
+    void end_at_last();
+    void measure_recording();
+    bool pack_piece();
 
     static constexpr std::size_t ring_size = 8192;  // 4 s or more of ticks
     using Ticks = Ring<ServoTick, ring_size>;
@@ -149,7 +157,17 @@ private:
 
     std::mutex recorder_mutex_;
     SessionRecorder recorder_;
-    std::string recording_problem_;  // since the last call of end_recording()
+    std::string recording_problem_;      // since the last call of end_recording()
+    std::filesystem::path recorded_in_;  // the newest recording
+    RecordingState recorded_;
+    std::deque<std::filesystem::path> to_pack_;  // the first is under way
+    double packed_share_ = 0;                    // of the first
+    std::vector<EndedRecording> ended_;
+    std::atomic<bool> packs_{true};
+
+    // The recorder's thread's own.
+    std::optional<RecordingPacker> packer_;
+    RecordingMeter meter_;
 
     std::thread simulation_thread_, servo_thread_, recorder_thread_;
 };

@@ -1,9 +1,11 @@
-// Recordings of a live session, and the thread that writes them.
+// Recordings of a live session, and the thread that writes and compresses them.
 #include "app/live_session.h"
 #include "core/load_error.h"
 
 #include <fmt/format.h>
 #include <chrono>
+#include <cstdint>
+#include <filesystem>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -12,7 +14,6 @@
 #include <vector>
 
 namespace palpa {
-
 void LiveSession::begin_recording(const std::filesystem::path& folder, bool overwrites,
                                   const std::optional<TrajectorySettings>& trajectory) {
     const std::lock_guard lock(recorder_mutex_);
@@ -25,6 +26,8 @@ void LiveSession::begin_recording(const std::filesystem::path& folder, bool over
     record_what_happened();
     recording_problem_.clear();
     recorder_.begin(folder, overwrites, trajectory);
+    recorded_in_ = folder;
+    recorded_ = {};
     if (trajectory) trajectory_queue_.begin(trajectory->per_second);
 }
 
@@ -33,6 +36,7 @@ void LiveSession::end_recording() {
     const std::lock_guard lock(recorder_mutex_);
     trajectory_queue_.end();
     record_what_happened();
+    if (recorder_.is_recording()) to_pack_.push_back(recorded_in_);
     recorder_.end(unbinding);
     if (recording_problem_.empty()) return;
     throw LoadError({"recording"}, std::exchange(recording_problem_, {}));
@@ -43,11 +47,25 @@ void LiveSession::write_statistics(const std::filesystem::path& path, bool overw
     recorder_.write_statistics(path, overwrites);
 }
 
-std::optional<double> LiveSession::recorded_s() {
+std::optional<RecordingState> LiveSession::recording() {
     const std::lock_guard lock(recorder_mutex_);
     if (!recorder_.is_recording()) return std::nullopt;
-    return recorder_.recorded_s();
+    recorded_.recorded_s = recorder_.recorded_s();
+    return recorded_;
 }
+
+std::optional<double> LiveSession::packed_share() {
+    const std::lock_guard lock(recorder_mutex_);
+    if (to_pack_.empty()) return std::nullopt;
+    return packed_share_ / static_cast<double>(to_pack_.size());
+}
+
+std::vector<EndedRecording> LiveSession::take_ended() {
+    const std::lock_guard lock(recorder_mutex_);
+    return std::exchange(ended_, {});
+}
+
+void LiveSession::stop_packing() { packs_ = false; }
 
 std::vector<std::string> LiveSession::take_recording_notes() {
     const std::lock_guard lock(recorder_mutex_);
@@ -67,16 +85,67 @@ void LiveSession::run_recorder() {
         {
             const std::lock_guard lock(recorder_mutex_);
             record_what_happened();
-            if (is_last && recorder_.is_recording()) {
-                try {
-                    recorder_.end(simulation_.unbinding());  // whose thread has ended
-                } catch (const LoadError& error) {
-                    recording_problem_ = error.what();
-                }
-            }
+            if (is_last) end_at_last();
         }
-        if (!is_last) std::this_thread::sleep_for(between);
+        measure_recording();
+        if (!pack_piece() && !is_last) std::this_thread::sleep_for(between);
     }
+    while (pack_piece()) {
+    }
+}
+
+// A recording that nobody ended, after the simulation's thread.
+void LiveSession::end_at_last() {
+    if (!recorder_.is_recording()) return;
+    try {
+        to_pack_.push_back(recorded_in_);
+        recorder_.end(simulation_.unbinding());
+    } catch (const LoadError& error) {
+        recording_problem_ = error.what();
+    }
+}
+
+// Once a second, without keeping the window waiting for the disk.
+void LiveSession::measure_recording() {
+    std::filesystem::path folder;
+    double recorded_s = 0;
+    {
+        const std::lock_guard lock(recorder_mutex_);
+        if (!recorder_.is_recording()) return;
+        folder = recorded_in_;
+        recorded_s = recorder_.recorded_s();
+    }
+    const std::optional<RecordingState> measured = meter_.measure(folder, recorded_s);
+    if (!measured) return;
+    const std::lock_guard lock(recorder_mutex_);
+    if (recorded_in_ == folder) recorded_ = *measured;
+}
+
+// Returns false if nothing is left to be compressed.
+bool LiveSession::pack_piece() {
+    std::filesystem::path folder;
+    {
+        const std::lock_guard lock(recorder_mutex_);
+        if (to_pack_.empty()) return false;
+        folder = to_pack_.front();
+    }
+    std::string problem;
+    bool goes_on = false;
+    try {
+        if (!packer_ && packs_) packer_.emplace(folder);
+        goes_on = packs_ && packer_->pack_piece();
+    } catch (const LoadError& error) {
+        problem = error.what();
+    }
+    const double share = goes_on ? packer_->share() : 0;
+    if (!goes_on) packer_.reset();
+    const std::uint64_t bytes = goes_on ? 0 : measure_folder(folder);
+    const std::lock_guard lock(recorder_mutex_);
+    packed_share_ = share;
+    if (goes_on) return true;
+    to_pack_.pop_front();
+    ended_.push_back({folder, bytes, problem});
+    return true;
 }
 
 void LiveSession::record_what_happened() {

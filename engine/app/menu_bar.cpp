@@ -70,7 +70,10 @@ float draw_toolbar(World& app, float top) {
         before = &action;
         const bool is_on = action.is_on && action.is_on(app);
         ImGui::BeginDisabled(!is_possible(app, action));
-        if (icon_button(action.icon, std::string(action.id).c_str(), {scaled(28), 0}, is_on))
+        const std::string state = action.state ? action.state(app) : std::string();
+        const std::string label = state.empty() ? action.icon : action.icon + ("  " + state);
+        const float width = state.empty() ? scaled(28) : 0;  // 0: as wide as it is
+        if (icon_button(label.c_str(), std::string(action.id).c_str(), {width, 0}, is_on))
             request(app, action, By::Toolbar);
         ImGui::EndDisabled();
         if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
@@ -152,7 +155,7 @@ void draw_warnings_and_legend(World& app) {
     const ScreenArea area = app.resource<Docks>().picture_area(screen.x, screen.y);
     draw_warnings(app, area);
     if (app.resource<Docks>().is_shown) draw_legend_panel(frame_of(app).legend, area);
-    if (const auto recorded_s = session_of(app).recorded_s()) draw_recording(*recorded_s, area);
+    if (const auto state = session_of(app).recording()) draw_recording(state->recorded_s, area);
 }
 
 }  // namespace palpa

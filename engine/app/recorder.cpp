@@ -13,8 +13,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <array>
+#include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -93,6 +98,33 @@ void tell_recording_notes(World& app) {
     }
 }
 
+// Once a recording.
+void tell_of_disk(World& app) {
+    constexpr double least_s = 600;
+    const std::optional<RecordingState> state = session_of(app).recording();
+    const std::optional<double> left_s = state ? seconds_left(*state) : std::nullopt;
+    if (!left_s || *left_s > least_s || app.resource<Recorder>().warned_of_disk) return;
+    app.write<Recorder>().warned_of_disk = true;
+    tell(app,
+         format_translated("the disk has room for {:.0f} minutes of this recording: {} are left",
+                           std::floor(*left_s / 60), describe_bytes(*state->free_bytes)),
+         long_notice_s);
+}
+
+void tell_of_compression(World& app) {
+    for (const EndedRecording& ended : session_of(app).take_ended()) {
+        const std::string folder = ended.folder.string();
+        tell(app,
+             ended.problem.empty()
+                 ? format_translated("recorded into {0}, {1}; to play it: Ctrl+O, O, its "
+                                     "journal.txt.gz",
+                                     folder, describe_bytes(ended.bytes))
+                 : format_translated("recorded into {0}, {1}, but it could not be compressed: {2}",
+                                     folder, describe_bytes(ended.bytes), ended.problem),
+             long_notice_s);
+    }
+}
+
 void tell_of_film(World& app) {
     Recorder& recorder = app.write<Recorder>();
     if (!recorder.film) return;
@@ -156,24 +188,43 @@ void record_or_end(World& app) {
     Recorder& recorder = app.write<Recorder>();
     WindowSession& session = session_of(app);
     try_to(app, [&] {
-        if (session.recorded_s()) {
+        if (session.recording()) {
             session.end_recording();
             tell_recording_notes(app);
-            tell(app,
-                 format_translated("recorded into {0}; to play it: Ctrl+O, O, its journal.txt",
-                                   recorder.recorded_in.string()),
-                 long_notice_s);
         } else {
             recorder.recorded_in =
                 find_free_name(options_of(app).files_folder, "palpa-session", {""});
             session.begin_recording(recorder.recorded_in, false, options_of(app).trajectory);
+            recorder.warned_of_disk = false;
             tell(app, format_translated("recording into {}", recorder.recorded_in.string()));
         }
     });
 }
 
+std::string describe_recording(const World& app) {
+    WindowSession& session = session_of(app);
+    if (const auto state = session.recording()) {
+        const std::string size = describe_bytes(state->bytes);
+        if (!state->free_bytes) return size;
+        return format_translated("{}, {} left", size, describe_bytes(*state->free_bytes));
+    }
+    const std::optional<double> share = session.packed_share();
+    return share ? format_translated("compressing: {:.0f} %", 100 * *share) : std::string();
+}
+
+void finish_recording(WindowSession& session, const StageFunction& on_stage) {
+    constexpr std::chrono::milliseconds between{20};
+    if (session.recording()) session.end_recording();
+    while (const std::optional<double> share = session.packed_share()) {
+        tell(on_stage, for_translation("compressing"), share);
+        std::this_thread::sleep_for(between);
+    }
+}
+
 void tell_of_recording(World& app) {
     tell_recording_notes(app);
+    tell_of_disk(app);
+    tell_of_compression(app);
     tell_of_film(app);
     if (const std::vector<std::string> notes = session_of(app).take_server_notes(); !notes.empty())
         tell(app, fmt::format("{}", fmt::join(notes, "\n")));

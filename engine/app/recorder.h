@@ -1,8 +1,12 @@
 // The files that a person takes out of the window: screenshots, films, recordings, coordinates,
 // readings.
 #pragma once
+#include "app/window_session.h"
+#include "core/stage.h"
 #include "ecs/world.h"
 #include "gpu/swapchain.h"
+
+#include <string>
 
 namespace palpa {
 
@@ -15,6 +19,10 @@ bool wants_shot(const World& app);
 
 void film_or_end(World& app);
 void record_or_end(World& app);
+// "12 MB, 48 GB left" while something is recorded, "compressing: 40 %" after that, else empty.
+std::string describe_recording(const World& app);
+// Ends what is recorded, and waits until it is compressed.
+void finish_recording(WindowSession& session, const StageFunction& on_stage);
 // Tells how far a film is, and what a recording and servers have to say; call once a frame.
 void tell_of_recording(World& app);
 

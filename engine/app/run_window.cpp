@@ -4,10 +4,15 @@
 #include "app/frame.h"
 #include "app/live_session.h"
 #include "app/notices.h"
+#include "app/recorder.h"
 #include "app/replay_session.h"
 #include "app/window_world.h"
+#include "core/interrupt.h"
+#include "core/load_error.h"
 #include "core/translate.h"
 
+#include <fmt/format.h>
+#include <cstdio>
 #include <memory>
 #include <span>
 #include <utility>
@@ -43,6 +48,26 @@ void begin(World& app) {
     tell(app, before.empty() ? options.notice : options.notice + "\n" + before, long_notice_s);
 }
 
+// Before the window goes, which says so meanwhile.
+void close_recording(WindowShell& shell, WindowSession& session) {
+    if (!session.recording() && !session.packed_share()) return;
+    try {
+        const bool is_done = shell.work(
+            translated("Compressing the recording. Cancelled, it stays as large as it is."),
+            [&](const StageFunction& stage) { finish_recording(session, stage); });
+        // A person may leave it as it is; a signal ends the window alone.
+        if (!is_done && noted_interrupt() == 0) session.stop_packing();
+    } catch (const LoadError& error) {
+        fmt::print(stderr, "note: {}\n", error.what());
+    }
+    finish_recording(session, {});
+    for (const EndedRecording& ended : session.take_ended()) {
+        if (!ended.problem.empty())
+            fmt::print(stderr, "note: {} could not be compressed: {}\n", ended.folder.string(),
+                       ended.problem);
+    }
+}
+
 }  // namespace
 
 WindowReport run_window(WindowShell& shell, const SceneDescription& scene, Device& device,
@@ -68,6 +93,7 @@ WindowReport run_window(WindowShell& shell, const SceneDescription& scene, Devic
         begin(app);
         run_frames(app);
         report = report_window(app);
+        close_recording(shell, *session);
     } else {
         report.next.emplace();
     }

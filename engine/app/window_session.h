@@ -1,6 +1,7 @@
 // A scene that runs behind a window: live, or a recorded session that is played again.
 #pragma once
 #include "app/live_frame.h"
+#include "app/recording_meter.h"
 #include "ecs/world.h"
 #include "haptics/device.h"
 #include "haptics/hand.h"
@@ -56,10 +57,17 @@ public:
     // something is recorded already.
     virtual void begin_recording(const std::filesystem::path& folder, bool overwrites,
                                  const std::optional<TrajectorySettings>& trajectory) = 0;
-    // Throws LoadError where not all could be written.
+    // Another thread then compresses what was recorded. Throws LoadError where not all could be
+    // written.
     virtual void end_recording() {}
-    // Seconds that are recorded so far; nothing where nothing is.
-    virtual std::optional<double> recorded_s() { return {}; }
+    // Nothing where nothing is recorded.
+    virtual std::optional<RecordingState> recording() { return {}; }
+    // Share of the compression that is done; nothing where nothing is compressed.
+    virtual std::optional<double> packed_share() { return {}; }
+    // Recordings that were compressed, or could not be, since the last call.
+    virtual std::vector<EndedRecording> take_ended() { return {}; }
+    // Leaves as it is what is not compressed yet.
+    virtual void stop_packing() {}
     // What a user should know of the recording, a sentence each, since the last call.
     virtual std::vector<std::string> take_recording_notes() { return {}; }
 };

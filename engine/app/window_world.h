@@ -242,6 +242,7 @@ struct Recorder {
     std::filesystem::path recorded_in, filmed_in;
     std::shared_ptr<FilmRecorder> film;
     bool wants_shot = false;
+    bool warned_of_disk = false;  // in this recording
 };
 
 // The mouse over the picture.

@@ -6,6 +6,8 @@
 #include "core/units.h"
 #include "devices/emulated_omni.h"
 #include "devices/mouse_handle.h"
+#include "formats/gzip.h"
+#include "formats/trajectory.h"
 #include "imd/client.h"
 #include "loading/load.h"
 #include "scene/read_scene.h"
@@ -24,6 +26,7 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -81,7 +84,7 @@ struct Played {
 Played play_again(const std::filesystem::path& folder) {
     const SceneDescription scene = read_scene(folder / "session.toml");
     const std::filesystem::path file = folder / "journal.txt";
-    const Journal journal = parse_journal(read_text_file(file), file.string());
+    const Journal journal = parse_journal(read_recorded_file(file), file.string());
     REQUIRE(journal.first_recorded);
     TraceCheck check(folder, journal.ticks.size() - *journal.first_recorded, scene.every,
                      journal.devices.size());
@@ -155,7 +158,7 @@ TEST_CASE("what a client pulls in a session is played again to the bit",
         CHECK(std::ranges::count(notes, "client 1 disconnected normally") == 1);
         live.session->end_recording();
     }
-    const std::string journal = read_text_file(recording / "journal.txt");
+    const std::string journal = read_recorded_file(recording / "journal.txt");
     CHECK(journal.find(R"("pull":[[6,0.0,3.0,0.0],[7,0.5,0.0,)") != std::string::npos);
     CHECK(journal.find(R"("pull":[])") != std::string::npos);
     check_same(recording, 30);
@@ -198,9 +201,9 @@ TEST_CASE("a session that was recorded from its middle is played again to the bi
         REQUIRE(live.wait_for_steps(20));
         live.session->send(Reset{5.5});
         REQUIRE(live.wait_for_steps(120));
-        CHECK(live.session->recorded_s().value_or(0) > 0.3);
+        CHECK(live.session->recording().value().recorded_s > 0.3);
         live.session->end_recording();
-        CHECK_FALSE(live.session->recorded_s());
+        CHECK_FALSE(live.session->recording());
     }
     check_same(recording, 500);
     CHECK(read_text_file(recording / "summary.json").find("\"largest_felt_N\"") !=
@@ -252,7 +255,7 @@ TEST_CASE("measured times that steer a choice are part of the journal", "[app][t
         live.session->end_recording();
     }
     check_same(recording, 300);
-    const Journal journal = parse_journal(read_text_file(recording / "journal.txt"), "j");
+    const Journal journal = parse_journal(read_recorded_file(recording / "journal.txt"), "j");
     std::vector<double> times;
     for (const PlayedEvent& event : journal.events) {
         if (const auto* const step = std::get_if<StepEvent>(&event.event))
@@ -283,7 +286,7 @@ TEST_CASE("renewals that a thread of its own makes are played again to the bit",
         live.session->end_recording();
     }
     check_same(recording, 500);
-    const Journal journal = parse_journal(read_text_file(recording / "journal.txt"), "j");
+    const Journal journal = parse_journal(read_recorded_file(recording / "journal.txt"), "j");
     const auto adopts = std::ranges::count_if(journal.events, [](const PlayedEvent& event) {
         const auto* const step = std::get_if<StepEvent>(&event.event);
         return step && step->adopts_renewal;
@@ -318,7 +321,7 @@ TEST_CASE("edits that take longer than a step are played again to the bit",
         REQUIRE(live.wait_for_steps(5));
         live.session->end_recording();
     }
-    const std::string journal = read_text_file(recording / "journal.txt");
+    const std::string journal = read_recorded_file(recording / "journal.txt");
     CHECK_THAT(journal, Contains("\"long\":true"));
     check_same(recording, 100);
 }
@@ -368,4 +371,77 @@ TEST_CASE("what is added while a session runs is recorded with its files",
     std::filesystem::remove(recording / "inputs" / "3-dimer.crd");
     CHECK_THAT(test::load_error_of([&] { (void)play_again(recording); }),
                Contains("3-dimer.crd; expected a file"));
+}
+
+TEST_CASE("a recording that is ended is compressed while the session goes on",
+          "[app][threads][journal]") {
+    const test::TemporaryFolder folder;
+    const std::filesystem::path first = folder.path() / "first", second = folder.path() / "second";
+    TwoMice live(test::water_scene(), 1);
+    live.session->begin_recording(first);
+    live.session->move_hand(Vec3(-0.05, 0.01, 0));
+    REQUIRE(live.wait_for_steps(100));
+    live.session->end_recording();
+    live.session->begin_recording(second);  // at once
+    std::vector<EndedRecording> ended;
+    REQUIRE(live.wait_until([&](const LiveFrame&) {
+        if (ended.empty()) ended = live.session->take_ended();
+        return !ended.empty();
+    }));
+    CHECK_FALSE(live.session->packed_share());
+    REQUIRE(ended.size() == 1);
+    CHECK(ended[0].folder == first);
+    CHECK(ended[0].problem.empty());
+    CHECK(ended[0].bytes == measure_folder(first));
+    for (const char* const name : {"trace.csv", "journal.txt"}) {
+        CHECK_FALSE(std::filesystem::exists(first / name));
+        CHECK(std::filesystem::exists(first / (std::string(name) + ".gz")));
+    }
+    REQUIRE(live.wait_for_steps(50));
+    live.session->stop_packing();
+    live.session.reset();  // ends the second, which stays as it is
+
+    CHECK(std::filesystem::exists(second / "trace.csv"));
+    check_same(first, 50);
+    check_same(second, 20);
+}
+
+TEST_CASE("a replay gives the atoms that the session had", "[app][threads][journal]") {
+    const test::TemporaryFolder folder;
+    const std::filesystem::path recording = folder.path() / "recording";
+    const SceneDescription scene = test::water_scene({"period_ms=4"});
+    {
+        TwoMice live(scene, 1);
+        REQUIRE(live.wait_for_steps(20));
+        live.session->begin_recording(recording, false, TrajectorySettings{.per_second = 1000});
+        live.session->move_hand(Vec3(-0.05, 0.01, 0));
+        REQUIRE(live.wait_for_steps(100));
+        live.session->end_recording();
+    }
+    std::vector<std::vector<Vec3>> played;
+    play_journal(
+        scene, parse_journal(read_recorded_file(recording / "journal.txt"), "j"),
+        [](std::span<const LiveTick>) {}, {},
+        [&](const LiveSimulation& simulation) {
+            played.push_back(simulation.world().resource<AtomTable>().positions);
+        });
+    const auto as_written = [](std::vector<Vec3> positions) {
+        for (Vec3& position : positions) position = position.cast<float>().cast<double>();
+        return positions;
+    };
+    const auto recorded = open_trajectory(recording / "trajectory.dcd");
+    REQUIRE(recorded->frame_count() > 90);
+    TrajectoryFrame frame;
+    recorded->read_frame(0, frame);
+    // The first steps may be from before the recording, since the tick that follows begins it.
+    const auto begin = std::ranges::find_if(played, [&](const std::vector<Vec3>& positions) {
+        return as_written(positions) == frame.positions;
+    });
+    const auto first = static_cast<std::size_t>(begin - played.begin());
+    CHECK(first < 10);
+    REQUIRE(first + recorded->frame_count() <= played.size());
+    for (std::size_t i = 0; i < recorded->frame_count(); ++i) {
+        recorded->read_frame(i, frame);
+        CHECK(as_written(played[first + i]) == frame.positions);
+    }
 }

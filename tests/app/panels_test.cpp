@@ -2,6 +2,7 @@
 #include "app/actions.h"
 #include "app/inspected.h"
 #include "app/lesson_course.h"
+#include "app/recorder.h"
 #include "tests/support/in_language.h"
 #include "tests/support/skip.h"
 #include "tests/support/window_screen.h"
@@ -343,9 +344,44 @@ TEST_CASE("a recording that is under way has a red mark", "[app][panels]") {
     };
     screen.frames(2);
     CHECK(count_red() == 0);
-    screen.session.recorded = 61.5;
+    screen.session.recorded = RecordingState{.recorded_s = 61.5};
     screen.frame();
     CHECK(count_red() > 10 + 4 * 13);  // a circle, and "recording 1:01"
+}
+
+TEST_CASE("the record button has the size and what is left, and a full disk is foretold once",
+          "[app][panels][recording]") {
+    WindowScreen screen;
+    const Action& record = action_called("record");
+    const auto is_told = [&](const char* text) {
+        tell_of_recording(screen.app);
+        const std::vector<std::string>& history = screen.app.resource<Notices>().history;
+        return std::ranges::count_if(history, [&](const std::string& notice) {
+            return notice.find(text) != std::string::npos;
+        });
+    };
+    screen.frames(2);
+    const int without = screen.vertices();
+    CHECK(record.state(screen.app).empty());
+
+    screen.session.recorded = {
+        .recorded_s = 60, .bytes = 12'400'000, .free_bytes = 48'000'000'000, .bytes_per_s = 1e6};
+    CHECK(record.state(screen.app) == "12 MB, 48 GB left");
+    screen.frames(2);
+    CHECK(screen.vertices() > without);
+    CHECK(is_told("the disk has room") == 0);
+    screen.session.recorded->free_bytes = 500'000'000;
+    CHECK(is_told("the disk has room for 8 minutes of this recording: 500 MB are left") == 1);
+    CHECK(is_told("the disk has room") == 1);
+
+    screen.session.recorded.reset();
+    screen.session.packed = 0.4;
+    CHECK(record.state(screen.app) == "compressing: 40 %");
+    screen.session.packed.reset();
+    screen.session.ended = {{"folder", 7'700'000, ""}, {"other", 30'000'000, "no room"}};
+    CHECK(is_told("recorded into folder, 8 MB; to play it: Ctrl+O, O, its journal.txt.gz") == 1);
+    CHECK(is_told("recorded into other, 30 MB, but it could not be compressed: no room") == 1);
+    CHECK(record.state(screen.app).empty());
 }
 
 TEST_CASE("keys switch modes, pause, step and reset", "[app][panels]") {

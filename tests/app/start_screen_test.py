@@ -106,7 +106,9 @@ class StartScreen(WindowCase):
             display.do("key", "ctrl+z")
             self.screenshot(display)
             display.do("key", "F9")
-            self.wait_until((recording / "summary.json").exists, "the recording's end")
+            journal = recording / "journal.txt.gz"
+            self.wait_until(lambda: journal.exists() and not (recording / "journal.txt").exists()
+                            and not (recording / "trace.csv").exists(), "the compressed recording")
             display.do("key", "ctrl+s")
             self.wait_until((prepared / "scene-2.toml").exists, "the saved scene")
             display.do("key", "ctrl+o")
@@ -115,7 +117,7 @@ class StartScreen(WindowCase):
             self.screenshot(display)
             # What was recorded is played again in the window, and nobody can change it.
             display.do("key", "ctrl+o")
-            display.drop(self.wait_for(display, "Palpa"), recording / "journal.txt")
+            display.drop(self.wait_for(display, "Palpa"), journal)
             self.wait_for(display, "Palpa - hairpin")
             display.do("key", "Delete")
             time.sleep(4)

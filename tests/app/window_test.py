@@ -14,6 +14,7 @@ from array import array
 from pathlib import Path
 
 from read_png import read_png
+from recorded_files import open_recorded
 
 PROGRAM = os.environ["PALPA_PROGRAM"]
 ROOT = Path(os.environ["PALPA_ROOT"])
@@ -379,7 +380,7 @@ class Session(unittest.TestCase):
             self.screenshot(display)
             self.assertEqual(self.count_waters(display), 3)
             display.do("key", "F9")
-            self.wait_until((recording / "summary.json").exists, "the end of the recording")
+            self.wait_until(lambda: self.is_compressed(recording), "the compressed recording")
             self.quit(display, changed=True)
 
         edits = self.edits_of(recording)
@@ -388,6 +389,13 @@ class Session(unittest.TestCase):
         self.assertIn('residue = "TIP3", name = "w2"', edits[0])
         self.assertIn('remove = "moved"', edits[3])
         self.assertTrue(self.plays_again(recording))
+        # Its atoms, which the recording leaves out, follow from the journal: the third water too.
+        again = subprocess.run([PROGRAM, "replay", recording, "--trajectory-fps", "25"], capture_output=True,
+                               text=True)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertIn(" 6 !NATOM", (recording / "system.psf").read_text())
+        self.assertIn(" 9 !NATOM", (recording / "system-2.psf").read_text())
+        self.assertGreater((recording / "trajectory-2.dcd").stat().st_size, 10 * 9 * 12)
 
     def test_a_file_that_is_dropped_is_added_and_recorded(self):
         recording, dropped = self.folder / "recording", self.folder / "a water.crd"
@@ -403,14 +411,20 @@ class Session(unittest.TestCase):
             self.quit(display, changed=True)
         dropped.unlink()
 
+        self.assertTrue(self.is_compressed(recording))  # on quitting
         self.assertEqual(len(self.edits_of(recording)), 1)
         self.assertIn('structure = "inputs/a_water.crd"', self.edits_of(recording)[0])
         self.assertIn('name = "a_water2"', self.edits_of(recording)[0])
         self.assertTrue(self.plays_again(recording))
 
+    @staticmethod
+    def is_compressed(recording):
+        files = {file.name for file in recording.iterdir() if file.is_file()} if recording.exists() else set()
+        return files == {"journal.txt.gz", "session.toml", "summary.json", "trace.csv.gz"}
+
     def edits_of(self, recording):
-        events = [line.split(" ", 2)[2] for line in
-                  (recording / "journal.txt").read_text().splitlines() if line.startswith("c ")]
+        with open_recorded(recording / "journal.txt") as journal:
+            events = [line.split(" ", 2)[2] for line in journal if line.startswith("c ")]
         return [event["edit"] for event in map(json.loads, events) if "edit" in event]
 
     def plays_again(self, recording):
@@ -693,7 +707,8 @@ class Session(unittest.TestCase):
     @staticmethod
     def poses_of(recording):
         """The place of the water in hand from the other one, Å, a row each."""
-        rows = (recording / "trace.csv").read_text().splitlines()
+        with open_recorded(recording / "trace.csv") as trace:
+            rows = trace.read().splitlines()
         first = rows[0].split(",").index("molecule_x_angstrom")
         return [tuple(map(float, row.split(",")[first:first + 3])) for row in rows[1:]]
 

@@ -15,6 +15,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpa::test {
@@ -29,13 +30,18 @@ public:
     void change_device(Device&, HandOrders*, std::size_t) override {}
     void begin_recording(const std::filesystem::path&, bool,
                          const std::optional<TrajectorySettings>&) override {
-        recorded = 0;
+        recorded.emplace();
     }
     void end_recording() override { recorded.reset(); }
-    std::optional<double> recorded_s() override { return recorded; }
+    std::optional<RecordingState> recording() override { return recorded; }
+
+    std::optional<double> packed_share() override { return packed; }
+    std::vector<EndedRecording> take_ended() override { return std::exchange(ended, {}); }
 
     std::vector<Command> commands;
-    std::optional<double> recorded;
+    std::optional<RecordingState> recorded;
+    std::optional<double> packed;
+    std::vector<EndedRecording> ended;
     World world;
 };
 
