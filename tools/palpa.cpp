@@ -39,7 +39,8 @@ std::optional<int> run_without_command(const std::vector<std::string>& arguments
 
 constexpr const char* usage =
     "  palpa               opens a window with all scenes; without a display, lists them\n"
-    "  palpa FILE          opens a scene, or prepares and opens a structure (.pdb, .cif)\n"
+    "  palpa FILE, CODE    opens a scene, or prepares a structure (.pdb, .cif) or a PDB entry "
+    "(1hsg)\n"
     "  palpa COMMAND ...   does one of these:\n";
 
 constexpr const char* footer =

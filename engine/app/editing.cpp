@@ -1,5 +1,6 @@
 #include "app/editing.h"
 
+#include "app/fetch_structure.h"
 #include "app/hands.h"
 #include "app/notices.h"
 #include "app/panels.h"
@@ -209,8 +210,9 @@ void add_molecule(World& app, AddEdit wanted) {
 void take_dropped(World& app, const std::vector<std::filesystem::path>& files) {
     Dialogs& dialogs = app.write<Dialogs>();
     if (files.empty() || is_study(app) || dialogs.question || !has_frame(app)) return;
-    const auto open = [&app, files] { ask_to_leave(app, NextScreen{files}); };
-    if (is_replay(app)) return open();
+    const NextScreen next = name_screen(files);
+    const auto open = [&app, next] { ask_to_leave(app, next); };
+    if (is_replay(app) || !next.code.empty()) return open();
     // A file that the open dialog lacks goes there.
     if (dialogs.add.is_open()) return dialogs.add.open(files);
     const auto is_scene = [](const std::filesystem::path& file) {

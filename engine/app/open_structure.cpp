@@ -78,8 +78,7 @@ SceneRequest build_request(std::span<const fs::path> files) {
 
 // NAME, NAME-2 and so on, of which there is none.
 fs::path find_free_folder(const fs::path& below, const fs::path& structure) {
-    fs::path name = structure.stem();
-    if (upper_case(structure.extension().string()) == ".GZ") name = name.stem();
+    fs::path name = name_of_structure(structure);
     if (name.empty()) name = "structure";
     for (int number = 1;; ++number) {
         fs::path folder =
@@ -280,7 +279,7 @@ std::optional<MadeScene> make_with_remedies(WindowShell& shell, SceneRequest req
 }  // namespace
 
 std::optional<fs::path> open_structure(WindowShell& shell, std::span<const fs::path> files,
-                                       const fs::path& folder) {
+                                       const fs::path& folder, const std::string& said) {
     const SceneRequest request = build_request(files);
     const std::optional<MadeScene> made = make_with_remedies(shell, request);
     if (!made) return std::nullopt;
@@ -288,8 +287,9 @@ std::optional<fs::path> open_structure(WindowShell& shell, std::span<const fs::p
     write_prepared(made->system, results, made->title, made->scene.files);
     const bool has_scene = !made->scene.files.empty();
     const std::size_t warnings = made->system.report.warnings().size();
-    std::string text = format_translated("{} atoms. Written to {}",
-                                         made->system.structure.names.size(), results.string());
+    std::string text = said.empty() ? std::string() : said + "\n";
+    text += format_translated("{} atoms. Written to {}", made->system.structure.names.size(),
+                              results.string());
     text += "\n";
     text += has_scene ? format_translated("In your hand: {}.", made->scene.in_hand)
                       : std::string(translated(

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 
 namespace palpa {
 
@@ -13,9 +14,11 @@ namespace palpa {
 // .mol, .mol2), or its topology (.psf), which is then taken as it is; of a topology alone the
 // coordinates are the file beside it. The results go to a new folder below `folder`, named after
 // the structure. Returns the scene's file; nothing where the person cancelled, or no scene can be
-// made of it, which they have read. Throws LoadError with what is wrong with a file.
+// made of it, which they have read; `said` stands above the report. Throws LoadError with what is
+// wrong with a file.
 std::optional<std::filesystem::path> open_structure(WindowShell& shell,
                                                     std::span<const std::filesystem::path> files,
-                                                    const std::filesystem::path& folder);
+                                                    const std::filesystem::path& folder,
+                                                    const std::string& said = {});
 
 }  // namespace palpa

@@ -60,6 +60,11 @@ bool read_text_scale(const toml::node& value, Preferences& preferences) {
     return scale && *scale >= 0.5 && *scale <= 4;
 }
 
+bool read_stall_seconds(const toml::node& value, Preferences& preferences) {
+    const std::optional<double> time = preferences.download_stall_seconds = value.value<double>();
+    return time && *time >= 1 && *time <= 3600;
+}
+
 std::optional<std::vector<std::string>> read_texts(const toml::node& value) {
     const toml::array* const several = value.as_array();
     if (!several) return {};
@@ -91,7 +96,7 @@ bool read_recent(const toml::node& value, Preferences& preferences) {
     return true;
 }
 
-constexpr std::array<Preference, 10> known_keys{
+constexpr std::array<Preference, 12> known_keys{
     {{"device", read_text<&Preferences::device>,
       "device is not text; expected a device name in quotes, such as \"mouse\""},
      {"sound", read_flag<&Preferences::sound>, "sound is not true or false; expected one of them"},
@@ -106,7 +111,11 @@ constexpr std::array<Preference, 10> known_keys{
      {"window_size", read_window_size, "window_size is not two whole numbers from 200 to 20000"},
      {"dark_theme", read_flag<&Preferences::dark_theme>,
       "dark_theme is not true or false; expected one of them"},
-     {"panels", read_panels, "panels is not a list of texts, such as [\"left 240\"]"}}};
+     {"panels", read_panels, "panels is not a list of texts, such as [\"left 240\"]"},
+     {"download_from", read_text<&Preferences::download_from>,
+      "download_from is not text; expected an address in quotes that begins with https://"},
+     {"download_stall_seconds", read_stall_seconds,
+      "download_stall_seconds is not a number from 1 to 3600"}}};
 
 TextPlace place_in(const std::string& file, const toml::source_region& source) {
     return {file, source.begin.line, source.begin.column};
@@ -165,6 +174,9 @@ std::string format_preferences(const Preferences& preferences) {
     if (preferences.hand_explained) table.insert("hand_explained", true);
     if (preferences.text_scale) table.insert("text_scale", *preferences.text_scale);
     if (preferences.language) table.insert("language", *preferences.language);
+    if (preferences.download_from) table.insert("download_from", *preferences.download_from);
+    if (preferences.download_stall_seconds)
+        table.insert("download_stall_seconds", *preferences.download_stall_seconds);
     std::ostringstream text;
     text << "# Preferences of Palpa's window.\n" << table << "\n";
     return text.str();
@@ -182,6 +194,14 @@ std::optional<fs::path> find_prepared_folder() {
     if (const auto folder = find_folder("XDG_DATA_HOME")) return *folder / name;
     if (const auto folder = find_folder("APPDATA")) return *folder / name;
     if (const auto folder = find_folder("HOME")) return *folder / ".local" / "share" / name;
+    return std::nullopt;
+}
+
+std::optional<fs::path> find_structure_cache() {
+    const fs::path name = fs::path("palpa") / "structures";
+    if (const auto folder = find_folder("XDG_CACHE_HOME")) return *folder / name;
+    if (const auto folder = find_folder("LOCALAPPDATA")) return *folder / name;
+    if (const auto folder = find_folder("HOME")) return *folder / ".cache" / name;
     return std::nullopt;
 }
 

@@ -20,6 +20,8 @@ struct Preferences {
     std::vector<std::string> panels{};                // as the window left them (app/panels.h)
     std::optional<std::string>
         language{};  // language of the window, "de"; unset: from the environment
+    std::optional<std::string> download_from{};  // address before CODE.cif.gz (download/entry.h)
+    std::optional<double> download_stall_seconds{};  // without data, after which a download ends
 
     friend bool operator==(const Preferences&, const Preferences&) = default;
 };
@@ -40,6 +42,10 @@ std::optional<std::filesystem::path> find_preferences_file();
 // Folder for prepared structures: palpa/scenes below XDG_DATA_HOME, ~/.local/share, or APPDATA on
 // Windows; empty if none is set.
 std::optional<std::filesystem::path> find_prepared_folder();
+
+// Folder for downloaded structures: palpa/structures below XDG_CACHE_HOME, ~/.cache, or
+// LOCALAPPDATA on Windows; empty if none is set.
+std::optional<std::filesystem::path> find_structure_cache();
 
 // Folder for what the window saves: Palpa in the user's documents, which are XDG_DOCUMENTS_DIR,
 // what user-dirs.dirs says, or Documents at home if that is there; without these, home, or the

@@ -111,7 +111,11 @@ struct WindowOptions {
 
 // What the person opens after a scene.
 struct NextScreen {
-    std::vector<std::filesystem::path> files{};  // files to open; none: the start screen
+    std::vector<std::filesystem::path> files{};  // files to open
+    std::string
+        code{};  // PDB entry to download and open, with the files; neither: the start screen
+
+    bool is_start() const noexcept { return files.empty() && code.empty(); }
 };
 
 struct WindowReport {

@@ -1,5 +1,6 @@
 #include "app/start_screen.h"
 
+#include "app/fetch_structure.h"
 #include "app/scene_cards.h"
 #include "core/load_error.h"
 #include "core/translate.h"
@@ -61,6 +62,7 @@ private:
     void move(int by);
     void open_chosen();
     void open(const fs::path& file);
+    void fetch(const std::optional<std::string>& code);
     void browse();
     void describe();
     void draw_header();
@@ -88,6 +90,7 @@ private:
     std::size_t columns_ = 1;
     std::string device_, problem_, notice_;
     FileBrowser browser_;
+    CodeField code_field_;
     std::vector<Language> languages_ = list_languages();
     bool is_over_ = false;
     std::optional<NextScreen> next_;
@@ -145,7 +148,7 @@ void StartScreen::take_input() {
         shell_.restart_graphics();
     }
     mouse_moved_ = input.mouse_dx != 0 || input.mouse_dy != 0;
-    if (!input.dropped.empty()) next_ = {input.dropped};
+    if (!input.dropped.empty()) next_ = name_screen(input.dropped);
     for (const KeyPress& each : input.pressed) press(each);
 }
 
@@ -153,6 +156,11 @@ void StartScreen::press(const KeyPress& press) {
     if (browser_.is_open()) {
         if (press.key == Key::Escape) return browser_.close();
         return browser_.press(press.key);
+    }
+    if (ImGui::GetIO().WantTextInput && !(press.control && press.key == Key::Q)) {
+        if (press.key == Key::Enter) code_field_.enter();
+        if (press.key == Key::Escape) ImGui::SetWindowFocus(nullptr);  // leaves the field
+        return;
     }
     const auto scale_text = [&](double scale) {
         drop_pictures();
@@ -169,6 +177,8 @@ void StartScreen::press(const KeyPress& press) {
     if (press.key == Key::Up) move(-row);
     if (press.key == Key::Enter || press.key == Key::Space) open_chosen();
     if (press.key == Key::O) browse();
+    if (press.key == Key::P) code_field_.focus();
+    if (press.key == Key::V && press.control) fetch(code_field_.paste());
     if (press.key == Key::Escape && ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) {
         closes_list_ = true;
     } else if (press.key == Key::Escape) {
@@ -192,6 +202,10 @@ void StartScreen::open_chosen() {
 }
 
 void StartScreen::open(const fs::path& file) { next_ = {{file}}; }
+
+void StartScreen::fetch(const std::optional<std::string>& code) {
+    if (code) next_ = NextScreen{.code = *code};
+}
 
 void StartScreen::browse() {
     std::error_code error;
@@ -303,6 +317,7 @@ void StartScreen::draw_card(std::size_t number, float width) {
 
 void StartScreen::draw_side() {
     if (ImGui::Button(labelled("Open a file... (O)").c_str(), {-1, 0})) browse();
+    fetch(code_field_.draw());
     ImGui::TextWrapped(
         "%s",
         translated("PDB or mmCIF (also .gz), CHARMM coordinates, or a scene; or drop one here. "

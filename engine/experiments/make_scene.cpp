@@ -9,6 +9,7 @@
 #include "core/translate.h"
 #include "formats/psf.h"
 #include "formats/structure.h"
+#include "scene/find_scene.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -57,7 +58,7 @@ TunedScene find_scene(const SceneRequest& request, const std::string& title,
     if (!request.makes_scene) return {};
     try {
         const std::string name =
-            request.title.empty() ? request.structure.stem().string() : request.title;
+            request.title.empty() ? name_of_structure(request.structure).string() : request.title;
         return tune_scene(system, request.grab, request.settings.align.has_value(), printable(name),
                           title, on_stage);
     } catch (const LoadError& error) {

@@ -84,10 +84,9 @@ std::string join_some(const std::vector<std::string>& names) {
 }
 
 std::string prepare_hint(const fs::path& structure) {
-    const bool is_packed = upper_case(structure.extension().string()) == ".GZ";
-    const fs::path name = is_packed ? structure.stem().stem() : structure.stem();
     return fmt::format("'palpa prepare {} -o {}' makes a scene from it",
-                       shell_word(structure.string()), shell_word(name.string()));
+                       shell_word(structure.string()),
+                       shell_word(name_of_structure(structure).string()));
 }
 
 // Throws where that is known to be something else than a scene.
@@ -196,6 +195,11 @@ bool is_structure(const fs::path& file) {
     std::string ending = upper_case(file.extension().string());
     if (ending == ".GZ") ending = upper_case(file.stem().extension().string());
     return std::find(endings.begin(), endings.end(), ending) != endings.end();
+}
+
+fs::path name_of_structure(const fs::path& file) {
+    const fs::path name = file.stem();
+    return upper_case(file.extension().string()) == ".GZ" ? name.stem() : name;
 }
 
 bool is_topology(const fs::path& file) { return upper_case(file.extension().string()) == ".PSF"; }

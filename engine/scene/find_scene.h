@@ -34,6 +34,9 @@ std::vector<SceneEntry> list_scenes(const std::filesystem::path& folder);
 // Whether the file's ending is that of a structure: .pdb, .cif, .crd and others, also with .gz.
 bool is_structure(const std::filesystem::path& file);
 
+// The file's name without its endings: "1hsg" of "1hsg.cif.gz".
+std::filesystem::path name_of_structure(const std::filesystem::path& file);
+
 // Whether it is a topology (.psf), which is opened with its coordinates.
 bool is_topology(const std::filesystem::path& file);
 

@@ -20,7 +20,9 @@ TEST_CASE("preferences read as they were written", "[tools][preferences]") {
                           .window_size = std::array{1280, 800},
                           .dark_theme = true,
                           .panels = {"left 240", "plots open"},
-                          .language = "de"};
+                          .language = "de",
+                          .download_from = "https://example.org/",
+                          .download_stall_seconds = 2.5};
 
     CHECK(parse_preferences("device = \"omni\"", "p.toml") == Preferences{.device = "omni"});
     CHECK(parse_preferences("sound = true", "p.toml") == Preferences{.sound = true});
@@ -46,11 +48,14 @@ TEST_CASE("preferences that are wrong say where", "[tools][preferences]") {
     CHECK_THAT(told("window_size = [1280]"), Contains("window_size is not two whole numbers"));
     CHECK_THAT(told("window_size = [100, 800]"), Contains("p.toml:1:15: window_size is not"));
     CHECK_THAT(told("panels = [1]"), Contains("panels is not a list of texts"));
+    CHECK_THAT(told("download_from = 1"), Contains("p.toml:1:17: download_from is not text"));
+    CHECK_THAT(told("download_stall_seconds = 0"), Contains("is not a number from 1 to 3600"));
     CHECK_THAT(told("dark_theme = 1"), Contains("dark_theme is not true or false"));
     CHECK_THAT(told("devise = \"omni\""),
                Contains("p.toml:1:10: unknown key 'devise'") &&
                    Contains("device, sound, scene, recent, hand_explained, text_scale, language, "
-                            "window_size, dark_theme, panels") &&
+                            "window_size, dark_theme, panels, download_from, "
+                            "download_stall_seconds") &&
                    Contains("did you mean 'device'"));
 }
 
@@ -95,7 +100,13 @@ TEST_CASE("the file is where the system keeps settings", "[tools][preferences]")
     unsetenv("APPDATA");
     setenv("HOME", "/home/somebody", 1);
     CHECK(find_preferences_file() == "/home/somebody/.config/palpa/preferences.toml");
+    setenv("XDG_CACHE_HOME", "/some/cache", 1);
+    CHECK(find_structure_cache() == "/some/cache/palpa/structures");
+    unsetenv("XDG_CACHE_HOME");
+    unsetenv("LOCALAPPDATA");
+    CHECK(find_structure_cache() == "/home/somebody/.cache/palpa/structures");
     unsetenv("XDG_CONFIG_HOME");
     unsetenv("HOME");
     CHECK_FALSE(find_preferences_file());
+    CHECK_FALSE(find_structure_cache());
 }

@@ -5,9 +5,11 @@ import shutil
 import subprocess
 import tempfile
 import time
+import types
 import unittest
 from pathlib import Path
 
+from entry_server import EntryServer, packed, stalled
 from read_png import read_png
 from window_case import WindowCase
 from window_test import PROGRAM, ROOT, Display
@@ -172,6 +174,74 @@ class StartScreen(WindowCase):
         played = subprocess.run([PROGRAM, "run", scene, "--headless", "--seconds", "0.1"],
                                 capture_output=True, text=True)
         self.assertEqual(played.returncode, 0, played.stderr)
+
+    def serve_entries(self):
+        """1abc is the hairpin, of 5sta only the beginning comes."""
+        structure = self.folder / "1abc.cif"
+        exported = subprocess.run([PROGRAM, "export", ROOT / "scenes" / "hairpin", "-o", structure],
+                                  capture_output=True, text=True)
+        self.assertEqual(exported.returncode, 0, exported.stderr)
+        server = EntryServer({"1abc": packed(structure.read_text()), "5sta": stalled(b"\x1f\x8b\x08")})
+        self.addCleanup(server.stop)
+        structure.unlink()
+        (self.folder / "palpa").mkdir()
+        (self.folder / "palpa" / "preferences.toml").write_text(
+            f'download_from = "{server.base}"\ndownload_stall_seconds = 3600\n')
+        return server
+
+    def test_an_entry_is_downloaded_by_its_code_and_from_the_cache_by_its_link(self):
+        server = self.serve_entries()
+        scenes = self.folder / "data" / "palpa" / "scenes"
+        with Display() as display:
+            self.start(display)
+            self.wait_for(display, "Palpa")
+            display.do("key", "p")
+            self.screenshot(display)
+            display.do("type", "1ABC")
+            display.do("key", "Return")
+            self.wait_until((scenes / "1abc" / "scene.toml").exists, "the prepared scene")
+            self.screenshot(display)  # of the report
+            display.do("key", "Return")
+            self.wait_for(display, "Palpa - 1abc")
+            self.screenshot(display)
+            link = types.SimpleNamespace(as_uri=lambda: "https://www.rcsb.org/structure/1ABC")
+            display.drop(self.wait_for(display, "Palpa - 1abc"), link)
+            self.wait_until((scenes / "1abc-2" / "scene.toml").exists, "the scene of the cache")
+            self.screenshot(display)
+            display.do("key", "Escape")
+            self.wait_for(display, "Palpa")
+            self.screenshot(display)
+            self.end(display)
+        self.assertEqual(server.asked, ["/1abc.cif.gz"])
+
+    def count_reds(self, picture):
+        """Of messages about what is wrong."""
+        (width, height), pixels = read_png(picture)
+        return sum(pixels[i] > 150 and pixels[i + 1] < 60 and pixels[i + 2] < 60
+                   for i in range(4 * width * (height // 10), 4 * width * (height // 2), 4)
+                   if i % (4 * width) > 3 * width)
+
+    def test_a_download_is_cancelled_and_a_code_that_is_none_is_explained(self):
+        server = self.serve_entries()
+        with Display() as display:
+            self.start(display)
+            self.wait_for(display, "Palpa")
+            display.do("key", "p")
+            self.screenshot(display)
+            display.do("type", "5sta")
+            display.do("key", "Return")
+            self.wait_until(lambda: server.asked == ["/5sta.cif.gz"], "the request")
+            display.do("key", "Escape")
+            # The cards of the start screen.
+            self.wait_until(lambda: self.count_greens(self.screenshot(display)) > 100, "the cards")
+            reds = self.count_reds(self.screenshot(display))
+            display.do("key", "p")
+            self.screenshot(display)
+            display.do("type", "water")
+            display.do("key", "Return")
+            self.wait_until(lambda: self.count_reds(self.screenshot(display)) > reds + 50, "the message")
+            self.end(display)
+        self.assertEqual(server.asked, ["/5sta.cif.gz"])
 
     def test_a_file_that_is_none_is_explained_on_the_start_screen(self):
         (self.folder / "broken.toml").write_text("title = 3\n")

@@ -1,6 +1,6 @@
 """Runs a file of unittest cases: run_cases.py FILE [-v]. Where one was skipped and none failed the exit
 code is 77, which ctest counts as skipped; unittest's own is 0. Cases see nobody's preferences: the
-folders for settings and data are empty ones."""
+folders for settings, data and caches are empty ones."""
 import importlib.util
 import os
 import sys
@@ -27,7 +27,7 @@ def run_file():
 
 def main():
     with tempfile.TemporaryDirectory() as home:
-        for kind in ("CONFIG", "DATA"):
+        for kind in ("CONFIG", "DATA", "CACHE"):
             os.environ[f"XDG_{kind}_HOME"] = str(Path(home) / kind.lower())
         return run_file()
 

@@ -122,7 +122,7 @@ class Version(unittest.TestCase):
     def test_the_first_line_is_version_and_commit_and_more_follows(self):
         lines = palpa("--version").stdout.splitlines()
         self.assertRegex(lines[0], r"^\d+\.\d+\.\d+ \(\S+\)$")
-        self.assertEqual([line.split()[0] for line in lines[1:]], ["formats", "compiler", "processor", "Vulkan"])
+        self.assertEqual([line.split()[0] for line in lines[1:]], ["formats", "compiler", "processor", "Vulkan", "libcurl"])
         self.assertEqual(lines[1].split(None, 1)[1], "scene 2.2, recording 2.1, journal 2.2")
         self.assertRegex(lines[2], r"(GCC|Clang|MSVC) .*\d")
         # As the kernel of the operating system names what the processor can do.
@@ -140,7 +140,7 @@ class Version(unittest.TestCase):
             result = palpa("--version", **nothing)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertRegex(result.stdout.splitlines()[4], r"^Vulkan +none: \w+")
-        self.assertEqual(len(result.stdout.splitlines()), 5)
+        self.assertEqual(len(result.stdout.splitlines()), 6)
 
 
 if __name__ == "__main__":

@@ -106,7 +106,7 @@ class Scripts(unittest.TestCase):
         for file in [ROOT / "CMakeLists.txt", *(ROOT / "engine").rglob("CMakeLists.txt"),
                      ROOT / "devices" / "CMakeLists.txt", ROOT / "tests" / "CMakeLists.txt"]:
             found |= set(re.findall(r"find_package\((\w+)", file.read_text()))
-        names = {"CLI11": "cli11", "Eigen3": "eigen3", "fmt": "fmt", "Catch2": "catch2",
+        names = {"CLI11": "cli11", "CURL": "curl", "Eigen3": "eigen3", "fmt": "fmt", "Catch2": "catch2",
                  "nlohmann_json": "nlohmann-json", "tomlplusplus": "tomlplusplus",
                  "glm": "glm", "hwy": "highway", "PNG": "libpng", "Vulkan": "vulkan",
                  "glfw3": "glfw3", "SDL2": "sdl2", "ZLIB": "zlib", "hidapi": "hidapi", "imgui": "imgui",

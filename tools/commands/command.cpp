@@ -2,6 +2,7 @@
 
 #include "core/load_error.h"
 #include "core/text.h"
+#include "download/pdb_code.h"
 #include "scene/read_scene.h"
 #include "tools/commands/render.h"
 
@@ -12,6 +13,14 @@ namespace palpa {
 
 void print_notes(const std::vector<std::string>& notes) {
     for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", printable(note));
+}
+
+void note_file_before_code(const std::string& file) {
+    if (!is_pdb_code(file)) return;
+    print_notes(
+        {fmt::format("{} is a file or folder here and is used; the PDB entry of this code is "
+                     "downloaded in other folders",
+                     file)});
 }
 
 void add_set_option(CLI::App& command, std::vector<std::string>& settings) {
@@ -104,7 +113,7 @@ void refuse_remote_engine(const SceneDescription& scene) {
     if (!scene.engine) return;
     throw LoadError(scene.place_of("engine"),
                     "a remote engine moves all atoms here, and this command needs Palpa's own "
-                    "needs Palpa's own mechanics; expected a scene without [engine], or palpa run");
+                    "mechanics; expected a scene without [engine], or palpa run");
 }
 
 }  // namespace palpa

@@ -49,6 +49,9 @@ void refuse_remote_engine(const SceneDescription& scene);
 // What a user should know of files that were read, on stderr.
 void print_notes(const std::vector<std::string>& notes);
 
+// Says of a file or folder whose name is a PDB code that no entry is downloaded.
+void note_file_before_code(const std::string& file);
+
 // --set, and what lets a scene name files outside of its folder.
 void add_set_option(CLI::App& command, std::vector<std::string>& settings);
 

@@ -31,6 +31,9 @@ constexpr std::array libraries = std::to_array<Library>({
      "vector instructions"},
     {"Dear ImGui", "imgui", "", "MIT", "https://github.com/ocornut/imgui", "panels"},
     {"JSON for Modern C++", "nlohmann_json", "", "MIT", "https://json.nlohmann.me", "JSON"},
+#ifdef PALPA_CURL
+    {"libcurl", "CURL", "", "curl", "https://curl.se/libcurl", "PDB entries by code"},
+#endif
     {"libpng", "PNG", "libpng16", "libpng-2.0", "http://www.libpng.org", "pictures"},
     {"PEGTL", "tao/pegtl", "", "MIT", "https://github.com/taocpp/PEGTL", "parser, for gemmi"},
     {"SDL", "SDL2", "libSDL2", "Zlib", "https://www.libsdl.org", "sound"},

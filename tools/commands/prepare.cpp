@@ -1,5 +1,6 @@
 #include "tools/commands/prepare.h"
 
+#include "app/fetch_structure.h"
 #include "core/files.h"
 #include "core/load_error.h"
 #include "core/shell_word.h"
@@ -204,6 +205,22 @@ void print_json(const PreparedSystem& system, const TunedScene& scene) {
     fmt::print("{}\n", json.dump(2));
 }
 
+// Replaces the code of a PDB entry, or a link to it, by its file.
+void fetch_if_code(PrepareOptions& options, ProgressLine& progress) {
+    const std::string code = name_screen({options.structure}).code;
+    if (!code.empty()) {
+        const EntrySource source = find_entry_source(PreferencesFile(find_preferences_file()));
+        const FetchedEntry entry = fetch_entry(code, source, options.again, progress.stages());
+        progress.wipe();
+        print_notes({describe(entry)});
+        options.structure = entry.file;
+    } else if (options.again) {
+        throw LoadError({"--again"}, "needs the code of a PDB entry; expected one such as 1hsg");
+    } else {
+        note_file_before_code(options.structure.string());
+    }
+}
+
 // Residues that the force field does not have are listed before the error.
 MadeScene make_or_list_unknown(const SceneRequest& request, const PrepareOptions& options,
                                ProgressLine& progress) {
@@ -232,10 +249,13 @@ MadeScene make_or_list_unknown(const SceneRequest& request, const PrepareOptions
 
 }  // namespace
 
-int prepare_command(const PrepareOptions& options) {
-    const PrepareSettings settings = build_settings(options);
+int prepare_command(const PrepareOptions& given) {
+    PrepareOptions options = given;
+    PrepareSettings settings = build_settings(options);
     check_outputs(options);
     ProgressLine progress(!options.json);
+    fetch_if_code(options, progress);
+    settings.entry = options.structure;
     const MadeScene made =
         make_or_list_unknown(build_request(options, settings), options, progress);
     const PreparedSystem& system = made.system;
@@ -364,13 +384,21 @@ void add_prepare(CLI::App& program, ProgramCommand& chosen) {
     CLI::App& prepare = *program.add_subcommand(
         "prepare", "Prepare a structure: add hydrogens, patches and topology, make a scene");
     PrepareOptions& options = own_options<PrepareOptions>(prepare, chosen, prepare_command);
-    describe(prepare, {"palpa prepare 1hsg.pdb --without MK1 -o my-protease",
-                       "palpa prepare complex.pdb -o complex --toppar ligand.str",
-                       "palpa prepare step1.crd --topology step1.psf -o mine"});
+    describe(
+        prepare,
+        {"palpa prepare 1hsg.pdb --without MK1 -o my-protease",
+         "palpa prepare 1hsg --without MK1 -o my-protease",
+         "palpa prepare complex.pdb -o complex --toppar ligand.str",
+         "palpa prepare step1.crd --topology step1.psf -o mine"},
+        "A PDB entry comes over HTTPS from download_from of the preferences, CODE.cif.gz below\n"
+        "it (default: the wwPDB's service), and is kept in the user's cache folder.");
     prepare
         .add_option("structure", options.structure,
-                    "structure file: .pdb, .ent, .cif or .crd, also with .gz")
+                    "structure file: .pdb, .ent, .cif or .crd, also with .gz; or the code of a PDB "
+                    "entry (1hsg), or a link to it, which is downloaded")
         ->required();
+    prepare.add_flag("--again", options.again,
+                     "download the PDB entry again (default: from the cache, if it is there)");
     prepare
         .add_option("--toppar", options.toppar,
                     "CHARMM topology, parameter and stream files, in order, or a folder of them; "

@@ -9,7 +9,8 @@
 namespace palpa {
 
 struct PrepareOptions {
-    std::filesystem::path structure;
+    std::filesystem::path structure;                        // or the code of a PDB entry
+    bool again = false;                                     // downloads the entry again
     std::filesystem::path topology;                         // empty: one is built
     std::vector<std::filesystem::path> toppar, parameters;  // beside the built-in force field
     bool only_toppar = false;                               // or in place of it

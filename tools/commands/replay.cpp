@@ -217,7 +217,7 @@ int replay_journal(const ReplayOptions& options, const SceneDescription& scene) 
 
 int replay_command(const ReplayOptions& options) {
     SceneDescription scene = read_recorded_scene(options.recording);
-    if (options.window) return open_screens({options.recording});
+    if (options.window) return open_screens({.files = {options.recording}});
     const RecordedKernels kernels(options.recording);
     if (has_journal(options.recording)) return replay_journal(options, scene);
     if (options.trajectory_fps)

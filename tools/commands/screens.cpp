@@ -1,5 +1,6 @@
 #include "tools/commands/screens.h"
 
+#include "app/fetch_structure.h"
 #include "app/open_structure.h"
 #include "app/preferences.h"
 #include "app/recovery.h"
@@ -7,6 +8,7 @@
 #include "app/window_devices.h"
 #include "core/interrupt.h"
 #include "core/load_error.h"
+#include "core/text.h"
 #include "core/translate.h"
 #include "devices/open_device.h"
 #include "experiments/emulated_hand.h"
@@ -82,14 +84,14 @@ fs::path prepared_folder(const RunOptions& options) {
 
 // Nothing where the person changed their mind.
 std::optional<fs::path> find_scene_of(WindowShell& shell, const std::vector<fs::path>& files,
-                                      const RunOptions& options) {
+                                      const RunOptions& options, const std::string& said) {
     if (files.size() == 1 && !is_structure(files[0]) && !is_topology(files[0]))
         return find_scene_file(files[0]);
     for (const fs::path& file : files) {
         if (file.extension() == ".toml")
             throw LoadError({file.string()}, "is a scene; expected it alone, without other files");
     }
-    return open_structure(shell, files, prepared_folder(options));
+    return open_structure(shell, files, prepared_folder(options), said);
 }
 
 // The folder of a window's recording that the files are, if they are one.
@@ -103,10 +105,11 @@ std::optional<fs::path> find_recording(const std::vector<fs::path>& files) {
 
 std::optional<NextScreen> show_files(std::optional<WindowShell>& shell,
                                      PreferencesFile& preferences,
-                                     const std::vector<fs::path>& files, RunOptions options) {
+                                     const std::vector<fs::path>& files, RunOptions options,
+                                     const std::string& said = {}) {
     if (const std::optional<fs::path> folder = find_recording(files))
         return show_recording(*shell, preferences, *folder, options);
-    const std::optional<fs::path> file = find_scene_of(*shell, files, options);
+    const std::optional<fs::path> file = find_scene_of(*shell, files, options, said);
     if (!file) return NextScreen{};
     options.scene = *file;
     std::vector<std::string> settings_over;
@@ -123,6 +126,19 @@ std::optional<NextScreen> show_files(std::optional<WindowShell>& shell,
     return show_scene(shell, preferences, scene, world, settings, options);
 }
 
+// Downloads the entry first, if there is one.
+std::optional<NextScreen> show_named(std::optional<WindowShell>& shell,
+                                     PreferencesFile& preferences, const NextScreen& named,
+                                     const RunOptions& options) {
+    if (named.code.empty()) return show_files(shell, preferences, named.files, options);
+    const std::optional<FetchedEntry> entry = fetch_structure(*shell, preferences, named.code);
+    if (!entry) return NextScreen{};
+    fmt::print(stderr, "note: {}\n", printable(describe(*entry)));
+    std::vector<fs::path> files{entry->file};
+    files.insert(files.end(), named.files.begin(), named.files.end());
+    return show_files(shell, preferences, files, options, translated_description(*entry));
+}
+
 }  // namespace
 
 void follow_screens(std::optional<WindowShell>& shell, PreferencesFile& preferences,
@@ -133,13 +149,13 @@ void follow_screens(std::optional<WindowShell>& shell, PreferencesFile& preferen
     while (next) {
         // What a person chose in the window counts more than the command line.
         if (preferences.now().device != before) later.device.reset();
-        if (next->files.empty()) {
+        if (next->is_start()) {
             next = show_start_screen(*shell, build_start(preferences, later, std::move(problem)));
             problem.clear();
             continue;
         }
         try {
-            next = show_files(shell, preferences, next->files, later);
+            next = show_named(shell, preferences, *next, later);
         } catch (const LoadError& error) {
             problem = error.what();
             next.emplace();
@@ -147,12 +163,12 @@ void follow_screens(std::optional<WindowShell>& shell, PreferencesFile& preferen
     }
 }
 
-int open_screens(const std::vector<fs::path>& files, const RunOptions& given) {
+int open_screens(const NextScreen& first, const RunOptions& given) {
     const RunOptions options = with_files_folder(given);
     PreferencesFile preferences(find_preferences_file());
     std::optional<WindowShell> shell;
     shell.emplace(shell_options(options, preferences));
-    follow_screens(shell, preferences, options, NextScreen{files});
+    follow_screens(shell, preferences, options, first);
     return exit_code_after(0);
 }
 

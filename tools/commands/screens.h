@@ -5,16 +5,14 @@
 #include "app/window_shell.h"
 #include "tools/commands/run.h"
 
-#include <filesystem>
 #include <optional>
-#include <vector>
 
 namespace palpa {
 
-// A window of its own with the start screen, or with these files: a scene, or a structure and
-// parameters of its ligands; the start screen says what is wrong with them. Returns the exit code.
-// Throws PlatformError, GpuError.
-int open_screens(const std::vector<std::filesystem::path>& files, const RunOptions& options = {});
+// A window of its own with the start screen, or with files: a scene, or a structure or the code of
+// one and parameters of its ligands; the start screen says what is wrong with them. Returns the
+// exit code. Throws PlatformError, GpuError.
+int open_screens(const NextScreen& first, const RunOptions& options = {});
 
 // From a scene on, in a window that is open, until the person quits.
 void follow_screens(std::optional<WindowShell>& shell, PreferencesFile& preferences,

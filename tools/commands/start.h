@@ -9,7 +9,8 @@ namespace palpa {
 // code.
 int start_command();
 
-// Whether this argument in a command's place names a file that could be opened, by its ending.
+// Whether this argument in a command's place names a file that could be opened, by its ending, or a
+// PDB entry by its code or a link.
 bool is_file_to_open(const std::string& argument);
 
 // A scene, or a structure and parameters of its ligands, in a window. Returns the exit code. Throws

@@ -3,6 +3,7 @@
 #include "core/file_versions.h"
 #include "core/machine.h"
 #include "core/version.h"
+#include "download/transfer.h"
 #include "field/processor.h"
 #include "gpu/device.h"
 
@@ -41,9 +42,10 @@ std::string describe_version() {
         "formats    {}\n"
         "compiler   {}\n"
         "processor  {} kernels, {}\n"
-        "Vulkan     {}\n",
+        "Vulkan     {}\n"
+        "libcurl    {}\n",
         version_name, commit_name, list_file_versions(), name_compiler(), processor_kind(),
-        machine_name(), name_vulkan_device());
+        machine_name(), name_vulkan_device(), describe_curl());
 }
 
 }  // namespace palpa

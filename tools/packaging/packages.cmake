@@ -26,8 +26,9 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
-# Without a driver nothing is drawn; without a font pictures have no words.
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "mesa-vulkan-drivers | vulkan-icd, fonts-dejavu-core")
+# Without a driver nothing is drawn; without a font pictures have no words; without libcurl, which is
+# loaded when it is needed, no PDB entries are downloaded.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "mesa-vulkan-drivers | vulkan-icd, fonts-dejavu-core, libcurl4 | libcurl3-gnutls, ca-certificates")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
 "You hold a molecule with the mouse or a haptic device, and a CHARMM force
 field pushes back: hydrogen bonds, salt bridges, a drug in its pocket.
