@@ -8,7 +8,7 @@
 #include "render/renderer.h"
 #include "session/run_headless.h"
 #include "tools/commands/print_run.h"
-#include "tools/commands/worded_picture.h"
+#include "view/worded_picture.h"
 
 #include <fmt/format.h>
 #include <cmath>

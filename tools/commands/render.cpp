@@ -19,12 +19,12 @@
 #include "tools/commands/film.h"
 #include "tools/commands/print_run.h"
 #include "tools/commands/progress.h"
-#include "tools/commands/worded_picture.h"
 #include "view/clip.h"
 #include "view/first_view.h"
 #include "view/hydrogen_bonds.h"
 #include "view/saved_views.h"
 #include "view/selected_atoms.h"
+#include "view/worded_picture.h"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -200,6 +200,16 @@ void check_render_options(const RenderOptions& options) {
         throw LoadError({"--coordinates"},
                         "belongs to a picture; expected -o in place of --film, or palpa export");
     if (options.film) check_film({*options.film, options.film_fps, options.overwrites});
+}
+
+// A note on standard error where there are such.
+void print_left_out(const LeftOutWords& left_out, const PictureWords& words) {
+    if (left_out.labels > 0) {
+        fmt::print(stderr, "note: {} of {} labels found no room in the picture\n", left_out.labels,
+                   words.labels.size());
+    }
+    if (left_out.has_legend)
+        fmt::print(stderr, "note: the legend of colours found no room in the picture\n");
 }
 
 }  // namespace

@@ -27,7 +27,7 @@
 #include "tools/commands/progress.h"
 #include "tools/commands/render.h"
 #include "tools/commands/scripted.h"
-#include "tools/commands/worded_picture.h"
+#include "view/worded_picture.h"
 
 #include <fmt/format.h>
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Frames with their words, for pictures and films without a window.
+// Frames with their words: pictures and films without a window, and clean pictures of a window.
 #pragma once
 #include "ecs/world.h"
 #include "render/renderer.h"
@@ -34,8 +34,5 @@ struct PictureSize {
 // finished picture. `left_out`, if wanted: the words that found no room. Throws GpuError.
 Picture draw_worded(Renderer& renderer, const PictureSize& size, WordedFrame& frame,
                     std::optional<TextPainter>& painter, LeftOutWords* left_out = nullptr);
-
-// A note on standard error where there are such.
-void print_left_out(const LeftOutWords& left_out, const PictureWords& words);
 
 }  // namespace palpa

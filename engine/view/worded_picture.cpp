@@ -1,11 +1,10 @@
-#include "tools/commands/worded_picture.h"
+#include "view/worded_picture.h"
 
 #include "core/load_error.h"
 #include "view/legend.h"
 
 #include <fmt/format.h>
 #include <cmath>
-#include <cstdio>
 
 namespace palpa {
 
@@ -40,15 +39,6 @@ Picture draw_worded(Renderer& renderer, const PictureSize& size, WordedFrame& fr
     const LeftOutWords lacking = write_words(frame.words, frame.scene, *painter, picture);
     if (left_out) *left_out = lacking;
     return picture;
-}
-
-void print_left_out(const LeftOutWords& left_out, const PictureWords& words) {
-    if (left_out.labels > 0) {
-        fmt::print(stderr, "note: {} of {} labels found no room in the picture\n", left_out.labels,
-                   words.labels.size());
-    }
-    if (left_out.has_legend)
-        fmt::print(stderr, "note: the legend of colours found no room in the picture\n");
 }
 
 }  // namespace palpa
