@@ -37,6 +37,7 @@ public:
     std::string_view name() const noexcept override;
     bool is_ours(const HidPlace& place) const noexcept override;
     bool is_talkative() const noexcept override { return true; }
+    void describe(DeviceSpec& spec) const noexcept override { spec.shakes = true; }
     DeviceCheck begin(HidLine& line, const HidPlace& place) noexcept override;
     bool decode(HidBytes report, HidInput& input) noexcept override;
     HidBytes encode(const HidOutput& output) noexcept override;

@@ -31,6 +31,7 @@ struct DeviceSpec {
     // False for devices that cannot hurt anybody: emulated, or moved by a mouse. The full safety
     // chain guards every real device in every mode.
     bool is_real = true;
+    bool shakes = false;  // its motors play the norm of the force, not its direction
 };
 
 // A problem that a responding device reports.

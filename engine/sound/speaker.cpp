@@ -56,7 +56,7 @@ void Speaker::fill(void* speaker, std::uint8_t* bytes, int size) noexcept {
     own.samples_since_ = own.tones_.take() ? 0 : own.samples_since_ + samples.size();
     const bool is_stale = own.samples_since_ > stale_samples;
     render_tone(is_stale ? Tone() : own.tones_.taken(), own.state_, samples);
-    own.is_silent_ = own.state_.amplitude == 0;
+    own.is_silent_ = own.state_.amplitude == 0 && own.state_.click_left == 0;
 }
 
 }  // namespace palpa

@@ -1,6 +1,8 @@
 // Converts a felt force to a tone (pitch, loudness and samples), for people whose device does not
 // render it.
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <span>
 
 namespace palpa {
@@ -20,8 +22,12 @@ inline constexpr int sound_rate_hz = 48'000;  // samples per second
 
 struct Tone {
     double hertz = lowest_hertz;
-    double amplitude = 0;  // 0 to 1; 0 is silence
+    double amplitude = 0;      // 0 to 1; 0 is silence
+    std::uint64_t clicks = 0;  // so far: one is heard whenever the number grows
 };
+
+// A click is a damped sine that is gone after 30 ms.
+inline constexpr double click_hertz = 1800, click_decay_s = 0.003, click_amplitude = 0.35;
 
 // The tone for a norm of the force. log f is proportional to the force, 8 semitones per newton, so
 // that equal steps of force sound like equal steps of pitch. The power of the wave (amplitude
@@ -35,12 +41,14 @@ struct ToneState {
     double turns = 0;  // phase of the oscillator, turns, 0 to 1
     double hertz = lowest_hertz;
     double amplitude = 0;
+    std::uint64_t clicks = 0;    // that were begun
+    std::size_t click_left = 0;  // samples of the last one that are still to come
 };
 
 // Writes the next samples, -1 to 1, at `sound_rate_hz`. Pitch and loudness approach the wanted tone
 // with a time constant of 10 ms, which hides the 16 ms steps of pictures and avoids clicks. A
 // fading tone keeps its pitch and ends in zeros; a new one starts at its own pitch. The result does
-// not depend on the number of samples per call.
+// not depend on the number of samples per call. Clicks are added to the tone.
 void render_tone(const Tone& wanted, ToneState& state, std::span<float> samples) noexcept;
 
 }  // namespace palpa

@@ -169,3 +169,25 @@ TEST_CASE("the wave does not know in how many pieces it is asked for", "[sound]"
         CHECK(pieces == whole);
     }
 }
+
+TEST_CASE("a click is heard once, whatever the blocks, and is gone after 30 ms", "[sound]") {
+    const auto play = [](std::size_t block) {
+        ToneState state;
+        std::vector<float> all(6000);
+        for (std::size_t at = 0; at < all.size(); at += block) {
+            Tone tone;
+            tone.clicks = at >= 1200 ? 1 : 0;
+            render_tone(tone, state, std::span(all).subspan(at, std::min(block, all.size() - at)));
+        }
+        return all;
+    };
+    const std::vector<float> samples = play(400);
+    CHECK(samples == play(1200));
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const double t = (static_cast<double>(i) - 1200) / 48'000;
+        const bool is_heard = t >= 0 && t < 0.030;
+        const double expected =
+            is_heard ? 0.35 * std::exp(-t / 0.003) * std::sin(2 * 3.14159265358979 * 1800 * t) : 0;
+        REQUIRE(samples[i] == Approx(expected).margin(1e-6));
+    }
+}
