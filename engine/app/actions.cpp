@@ -5,6 +5,7 @@
 #include "app/editing.h"
 #include "app/hands.h"
 #include "app/lesson_course.h"
+#include "app/marks.h"
 #include "app/notices.h"
 #include "app/panels.h"
 #include "app/recorder.h"
@@ -40,12 +41,13 @@ bool has_selection(const World& app) { return !app.resource<SelectionState>().at
 bool has_views(const World& app) { return !app.resource<SavedViewState>().all.empty(); }
 bool is_recording(const World& app) { return session_of(app).recording().has_value(); }
 bool is_filming(const World& app) { return app.resource<Recorder>().film != nullptr; }
-bool sounds(const World& app) { return app.resource<ForceTone>().speaker != nullptr; }
+bool sounds(const World& app) { return app.resource<ForceTone>().is_on; }
 bool looks_at_held(const World& app) { return app.resource<CameraState>().looks_at_held; }
 
 bool can_relax(const World& app) { return frame_of(app).objects.can_relax; }
 
 bool shows_docks(const World& app) { return app.resource<Docks>().is_shown; }
+bool is_in_lesson(const World& app) { return !app.resource<LessonState>().lesson.is_done(); }
 bool shows_lesson(const World& app) { return is_panel_open(app, "lesson"); }
 bool shows_keys(const World& app) { return is_panel_open(app, "keys"); }
 
@@ -58,6 +60,9 @@ void toggle_docks(World& app) {
 void toggle_lesson(World& app) { toggle_panel(app, "lesson"); }
 void toggle_keys(World& app) { toggle_panel(app, "keys"); }
 void open_search(World& app) { open_panel(app, "search", true); }
+void open_picture_panel(World& app) {
+    if (has_frame(app)) open_panel(app, "picture");
+}
 void open_select_panel(World& app) {
     if (has_frame(app)) open_panel(app, "select", true);
 }
@@ -124,6 +129,7 @@ constexpr auto actions = std::to_array<Action>({
     {"save", for_translation("Save as a new scene"), for_translation("Saves the scene with its present atoms and settings to a new file."), Menu::File, {{{Key::S, true}}}, icon_save, save_scene_as_new, can_save},
     {"export", for_translation("Export coordinates..."), for_translation("Saves coordinates or readings for other programs."), Menu::File, {{{Key::E}}}, "", ask_for_export},
     {"screenshot", for_translation("Screenshot"), for_translation("Saves a picture of the window."), Menu::File, {{{Key::F12}}}, icon_camera, take_screenshot, nullptr, nullptr, true, true},
+    {"picture", for_translation("Save a picture..."), for_translation("Saves a picture of what is on screen, without panels, at any size."), Menu::File, {{{Key::F12, false, true}}}, "", open_picture_panel},
     {"film", for_translation("Film"), for_translation("Starts or ends a film of the window."), Menu::File, {{{Key::M}}}, "", film_or_end, nullptr, is_filming},
     {"record", for_translation("Record the session"), for_translation("Starts or ends a recording that can be played again to the last digit."), Menu::File, {{{Key::F9}}}, icon_record, record_or_end, nullptr, is_recording, false, false, describe_recording},
     {"quit", for_translation("Quit"), for_translation("Closes the window; asks if something is not saved."), Menu::File, {{{Key::Q, true}}}, "", ask_to_quit, nullptr, nullptr, true},
@@ -141,6 +147,11 @@ constexpr auto actions = std::to_array<Action>({
     {"only-in-hand", for_translation("Only the molecule in hand"), for_translation("Shows only the molecule in hand and what is behind it; or all again."), Menu::View, {{{Key::F}}}, icon_centre, look_at_held_or_all, nullptr, looks_at_held, true},
     {"representation", for_translation("Next representation"), for_translation( "Draws molecules in another way: balls and sticks, cartoon, surface and others."), Menu::View, {{{Key::V}}}, icon_molecule, choose_next_representation},
     {"colours", for_translation("Next colours"), for_translation("Colours atoms by another property."), Menu::View, {{{Key::C}}}, icon_colour, choose_next_colouring},
+    {"contacts", for_translation("Contacts"), for_translation("Draws contacts, clashes and salt bridges of what is in hand."), Menu::View, {}, "", toggle_contacts, nullptr, shows_contacts},
+    {"residue-forces", for_translation("Forces by residue"), for_translation("Draws the strongest forces of single residues on what is in hand."), Menu::View, {}, "", toggle_forces_by_residue, nullptr, shows_forces_by_residue},
+    {"ghost", for_translation("Ghost"), for_translation("Draws the molecule in hand where it was at the start, too."), Menu::View, {}, "", toggle_ghost, nullptr, shows_ghost},
+    {"trail", for_translation("Trail"), for_translation("Draws the path of the molecule in hand in the last seconds."), Menu::View, {}, "", toggle_trail, nullptr, shows_trail},
+    {"shadows", for_translation("Shadows"), for_translation("Lets molecules cast shadows on each other; drawing takes longer."), Menu::View, {}, "", toggle_shadows, nullptr, shows_shadows},
     {"next-view", for_translation("Next saved view"), for_translation("Flies to the next saved view."), Menu::View, {{{Key::W}}}, "", go_to_next_view},
     {"add-view", for_translation("Save this view"), for_translation("Saves the present view; Ctrl+S writes it to a scene file."), Menu::View, {{{Key::W, false, true}}}, "", add_view},
     {"tour", for_translation("Tour of the saved views"), for_translation("Starts or ends a tour of the saved views."), Menu::View, {{{Key::U}}}, "", begin_or_end_tour, has_views},
@@ -154,6 +165,8 @@ constexpr auto actions = std::to_array<Action>({
     {"select", for_translation("Select atoms..."), for_translation("Selects atoms by an expression; Ctrl+drag selects those in a box."), Menu::Select, {{{Key::F, true}}}, "", open_select_panel},
     {"centre", for_translation("Centre the selection"), for_translation("Flies to the selected atoms, or to the ligand."), Menu::Select, {{{Key::F, false, true}}}, "", look_at_selected_or_ligand},
     {"select-nothing", for_translation("Select nothing"), for_translation("Clears the selection."), Menu::Select, {}, "", select_nothing, has_selection},
+    {"measure", for_translation("Measure"), for_translation("Measures by clicks: two atoms give a distance, three an angle, four a dihedral."), Menu::Select, {{{Key::I}}}, "", measure_or_end, has_frame, measures},
+    {"remove-measures", for_translation("Remove all measures"), for_translation("Removes all measures from the picture."), Menu::Select, {}, "", remove_measures, has_measures},
     // ---- Simulate
     {"pause", for_translation("Pause"), for_translation("While paused, nothing moves and the hand feels no force."), Menu::Simulate, {{{Key::P}}}, icon_pause, pause_or_go_on, nullptr, is_paused},
     {"step", for_translation("One step"), for_translation("Makes one step of the simulation, then pauses."), Menu::Simulate, {{{Key::Period}}}, icon_step, step_once},
@@ -166,12 +179,13 @@ constexpr auto actions = std::to_array<Action>({
     {"mode-5", for_translation("Mode 5: no force"), for_translation("The hand leads the molecule and feels nothing."), Menu::Simulate, {{{Key::Digit5}}}, "", choose_mode<CouplingMode::NoForce>, nullptr, is_mode<CouplingMode::NoForce>},
     {"guarded", for_translation("Mode 6: guarded coupling"), for_translation("The 1 kHz servo itself moves the molecule in the force field around it."), Menu::Simulate, {{{Key::Digit6}}}, "", choose_mode<CouplingMode::Guarded>, nullptr, is_mode<CouplingMode::Guarded>},
     {"next-device", for_translation("Another device"), for_translation("Takes the next connected device into the hand."), Menu::Simulate, {{{Key::D}}}, "", choose_next_device, can_choose_device},
-    {"sound", for_translation("Force as a tone"), for_translation("Plays the force on the hand: a stronger force is higher and louder."), Menu::Simulate, {{{Key::S}}}, icon_sound, choose_sound, nullptr, sounds},
+    {"sound", for_translation("Hear the force"), for_translation("Plays the force on the hand as a tone, higher and louder for a stronger force, clicks at snaps, and shakes a game pad."), Menu::Simulate, {{{Key::S}}}, icon_sound, choose_sound, nullptr, sounds},
     {"play-trajectory", for_translation("Play the trajectory"), for_translation("Plays or stops the trajectory."), Menu::Simulate, {{{Key::T}}}, "", play_or_stop_trajectory, has_playback},
     {"trajectory-start", for_translation("Trajectory from the start"), for_translation("Goes back to the first frame of the trajectory."), Menu::Simulate, {{{Key::T, false, true}}}, "", play_trajectory_from_start, has_playback},
     // ---- Lesson
     {"lesson", for_translation("Lesson"), for_translation("Shows or hides the lesson of the scene."), Menu::Lesson, {{{Key::L}}}, "", toggle_lesson, has_lesson, shows_lesson},
-    {"next-step", for_translation("Next step"), for_translation("Goes to the next step of the lesson, if this one is done."), Menu::Lesson, {{{Key::Enter}, {Key::N}}}, "", go_on_in_lesson, has_lesson},
+    {"next-step", for_translation("Next step"), for_translation("Goes to the next step of the lesson, if this one is done; from the end, to the next lesson."), Menu::Lesson, {{{Key::Enter}, {Key::N}}}, "", go_on_in_lesson, has_lesson},
+    {"skip-step", for_translation("Skip this step"), for_translation("Goes to the next step of the lesson, done or not."), Menu::Lesson, {}, "", skip_step, is_in_lesson},
     {"restart-lesson", for_translation("From the start"), for_translation("Begins the lesson again, with the scene as at the start."), Menu::Lesson, {}, "", restart_lesson, has_lesson},
     // ---- Help
     {"search", for_translation("Search actions and keys..."), for_translation("Finds every action and every key of scene files."), Menu::Help, {{{Key::K, true}}}, icon_search, open_search},

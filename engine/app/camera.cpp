@@ -171,6 +171,7 @@ void send_view(World& app) {
     wanted.layers = additions.layers;
     wanted.labels = additions.labels;
     wanted.hidden = additions.hidden;
+    wanted.marks.measures = additions.measures;
     const SavedViewState& views = app.resource<SavedViewState>();
     if (views.at) {
         const std::vector<ViewLayer>& layers = views.all[*views.at].layers;
@@ -203,6 +204,9 @@ ViewDescription describe_view(const World& app) {
     view.layers = additions.layers;
     view.labels = additions.labels;
     view.hidden = additions.hidden;
+    view.marks = picture.view.marks;
+    view.marks.measures = additions.measures;
+    view.shadows = picture.view.shadows;
     return view;
 }
 

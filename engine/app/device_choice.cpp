@@ -126,35 +126,60 @@ void choose_next_device(World& app) {
 }
 
 bool switch_sound(World& app, bool is_on) {
-    std::shared_ptr<Speaker>& speaker = app.write<ForceTone>().speaker;
-    speaker.reset();
+    ForceTone& tone = app.write<ForceTone>();
+    tone.speaker.reset();
+    tone.rumble.reset();
+    tone.is_on = is_on;
     if (!is_on) return true;
+    tone.rumble = std::make_shared<PadRumble>();
     try {
-        speaker = std::make_shared<Speaker>();
+        tone.speaker = std::make_shared<Speaker>();
     } catch (const SoundError& error) {
-        tell(app, format_translated("no tone: {}", error.what()), long_notice_s);
-        return false;
+        tone.is_on = tone.rumble->find();
+        tell(app,
+             tone.is_on ? format_translated("no tone: {}; the game pad rumbles", error.what())
+                        : format_translated("no tone: {}", error.what()),
+             long_notice_s);
     }
-    return true;
+    return tone.is_on;
 }
 
 void choose_sound(World& app) {
-    const bool is_on = !app.resource<ForceTone>().speaker;
+    const bool is_on = !app.resource<ForceTone>().is_on;
     if (!switch_sound(app, is_on)) return;
-    tell(app, is_on ? translated("sound on: the higher and louder the tone, the stronger the force")
-                    : translated("sound off"));
+    if (!is_on) {
+        tell(app, translated("sound off"));
+    } else if (app.resource<ForceTone>().speaker) {
+        tell(app, translated("sound on: the higher and louder the tone, the stronger the force on "
+                             "your hand; a click: something snapped"));
+    }
     const std::string problem = keep_choice(options_of(app).sound.remember, is_on);
     if (!problem.empty()) tell(app, problem, long_notice_s);
 }
 
+// Whether the device itself lets a person feel the force.
+bool plays_force(const Device& device) {
+    const DeviceSpec& spec = device.spec();
+    return spec.is_real && (spec.shakes || spec.peak_force_newton > 0);
+}
+
 // While paused the hand feels nothing.
 void play_force(World& app) {
-    std::shared_ptr<Speaker>& speaker = app.write<ForceTone>().speaker;
-    if (!speaker) return;
-    const double newton = app.resource<WindowHands>().by_mouse().felt_newton;
-    if (speaker->is_there())
-        return speaker->play(tone_of(frame_of(app).readout.paused ? 0 : newton));
-    speaker.reset();
+    ForceTone& sound = app.write<ForceTone>();
+    const Readout& readout = frame_of(app).readout;
+    if (readout.snap_step > sound.snap_step) ++sound.clicks;
+    sound.snap_step = readout.snap_step;
+    if (!sound.is_on) return;
+    const double newton = readout.paused ? 0 : app.resource<WindowHands>().by_mouse().felt_newton;
+    if (!plays_force(*app.resource<WindowHands>().by_mouse().device) && sound.rumble->find())
+        sound.rumble->play(newton, sound.clicks);
+    if (!sound.speaker) return;
+    if (sound.speaker->is_there()) {
+        Tone tone = tone_of(newton);
+        tone.clicks = sound.clicks;
+        return sound.speaker->play(tone);
+    }
+    sound.speaker.reset();
     tell(app, translated("no tone: the sound output was disconnected"), long_notice_s);
 }
 

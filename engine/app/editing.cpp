@@ -2,6 +2,7 @@
 
 #include "app/fetch_structure.h"
 #include "app/hands.h"
+#include "app/marks.h"
 #include "app/notices.h"
 #include "app/panels.h"
 #include "app/saving.h"
@@ -137,6 +138,7 @@ void click_atom(World& app, const MouseClick& click) {
     const std::optional<std::uint32_t> atom = find_atom(app, click.x, click.y);
     if (!atom) return;
     if (labels) return label_atom(app, *atom);
+    if (measures(app)) return measure_atom(app, *atom);
     const AtomScope scope = click.control ? AtomScope::Atom
                             : click.shift ? AtomScope::Residue
                                           : AtomScope::Molecule;

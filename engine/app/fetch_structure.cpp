@@ -33,7 +33,7 @@ EntrySource find_entry_source(const PreferencesFile& preferences) {
     if (!preferences.problem().empty())
         throw LoadError({"preferences"}, "cannot be read, and name where to download from: " +
                                              preferences.problem());
-    const std::optional<std::filesystem::path> cache = find_structure_cache();
+    const std::optional<std::filesystem::path> cache = find_cache_folder("structures");
     if (!cache)
         throw LoadError({"cache"}, "there is no folder for downloads (set HOME or XDG_CACHE_HOME)");
     const Preferences& now = preferences.now();

@@ -1,17 +1,20 @@
 #include "app/frame.h"
 
 #include "app/camera.h"
+#include "app/clean_picture.h"
 #include "app/device_choice.h"
 #include "app/draw_window.h"
 #include "app/editing.h"
 #include "app/hands.h"
 #include "app/inspected.h"
 #include "app/lesson_course.h"
+#include "app/marks.h"
 #include "app/notices.h"
 #include "app/panels.h"
 #include "app/recorder.h"
 #include "app/saved_views.h"
 #include "app/saving.h"
+#include "app/scene_cards.h"
 #include "app/selecting.h"
 #include "app/settings.h"
 #include "app/take_input.h"
@@ -40,6 +43,21 @@ void read_frame(World& app) {
     readout.holds_something = led_hand(app).held.count > 0;
     follow_settings(app);
     tell_news(app);
+}
+
+// What the start screen will show of the scene.
+void keep_picture(World& app) {
+    const auto& keep = options_of(app).keep_picture;
+    if (!keep || !has_frame(app) || !shell_of(app).graphics()) return;
+    constexpr CleanPicture small{.width = card_picture_width,
+                                 .height = card_picture_height,
+                                 .has_words = false,
+                                 .has_arrow = false};
+    try {
+        keep(draw_clean_picture(app, small));
+    } catch (const GpuError&) {  // then the card has none
+    } catch (const LoadError&) {
+    }
 }
 
 using FrameSystem = void (*)(World& app);
@@ -78,6 +96,7 @@ World build_window_world(const WindowLinks& links, std::vector<WindowHand> hands
     app.set_resource(PictureState{.view = options.view, .sent = options.view});
     app.set_resource(SavedViewState{.all = scene.view.saved});
     app.set_resource(SelectionState{});
+    app.set_resource(Measuring{});
     app.set_resource(additions_of(scene.view));
     app.set_resource(SettingsState{.now = settings_of(scene, 0)});
     app.set_resource(PendingEdits{});
@@ -117,6 +136,7 @@ void run_frames(World& app) {
         },
         [&] { tell(app, translated("the graphics device was lost and has been set up again")); });
     shell.window().capture_cursor(false);  // Space may have captured it
+    keep_picture(app);
     (void)keep_choice(options.remember_panels, list_docks(app.resource<Docks>()));
 }
 

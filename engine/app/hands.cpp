@@ -132,7 +132,8 @@ void explain_hand(World& app, double most_newton) {
     if (std::exchange(app.write<WindowHands>().is_explained, true)) return;
     tell(app,
          format_translated("Ring: where your hand wants the molecule. Dashed thread: how far it "
-                           "stays behind. Bar: the force on your hand, full at {:.3g} N.",
+                           "stays behind. Bars: the force on the molecule, and the force on your "
+                           "hand, full at {:.3g} N.",
                            most_newton),
          long_notice_s);
     (void)keep_choice(options_of(app).remember_hand_explained, true);
@@ -213,22 +214,28 @@ void show_hand_targets(World& app) {
 }
 
 void draw_hand_signs(World& app) {
-    constexpr double least_waiting_m = 0.002, faintest_newton = 0.02;
+    constexpr double least_waiting_m = 0.002, faintest_newton = 0.02, faintest_nN = 0.005;
     const std::vector<WindowHand>& hands = app.resource<WindowHands>().all;
     const FrameCamera& camera = app.resource<PictureState>().shown.camera;
     for (std::size_t slot = 0; slot < hands.size(); ++slot) {
         const WindowHand& hand = hands[slot];
         if (frame_of(app).hands[slot].held.count == 0) continue;
-        HandSign sign{as_float(find_hand_target(app, slot)), hand.felt_newton,
-                      frame_of(app).hands[slot].settings.coupling.clamp_N};
+        const LiveHand& now = frame_of(app).hands[slot];
+        HandSign sign{.place = as_float(find_hand_target(app, slot)),
+                      .newton = hand.felt_newton,
+                      .most_newton = now.settings.coupling.clamp_N,
+                      .molecule_nN = 1e9 * now.contact.force_newton.norm()};
         if (hand.is_at_stop) {
             sign.reason = translated("handle's end");
         } else if (hand.is_at_wall) {
             sign.reason = translated("at wall");
         } else if (hand.waiting_m.norm() > least_waiting_m) {
             sign.reason = translated("molecule waits");
+        } else if (hand.is_led() && hand.lead.is_clutched()) {
+            sign.reason = translated("let go");
         }
-        if (sign.reason.empty() && sign.newton < faintest_newton) continue;
+        const bool is_faint = sign.newton < faintest_newton && sign.molecule_nN < faintest_nN;
+        if (is_faint && (sign.reason.empty() || hand.lead.is_clutched())) continue;
         explain_hand(app, sign.most_newton);
         draw_hand_sign(sign, camera, free_area(app));
     }

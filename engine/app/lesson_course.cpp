@@ -3,9 +3,14 @@
 #include "app/actions.h"
 #include "app/panels.h"
 #include "app/saved_views.h"
+#include "app/saving.h"
 #include "app/settings.h"
+#include "app/window_shell.h"
 #include "app/window_world.h"
 #include "view/saved_views.h"
+
+#include <optional>
+#include <utility>
 
 namespace palpa {
 namespace {
@@ -38,6 +43,9 @@ void begin_step(World& app) {
 
 void follow_lesson(World& app) {
     LessonState& state = app.write<LessonState>();
+    const bool is_done = state.lesson.steps_done() == state.lesson.steps().size();
+    if (is_done && !state.was_skipped && !std::exchange(state.is_noted, true))
+        (void)keep_choice(options_of(app).lesson.remember_done, true);
     follow_restart(state, frame_of(app).readout);
     state.measured = frame_of(app).readout.lesson.values;
     begin_step(app);
@@ -48,12 +56,14 @@ void follow_lesson_by_tick(World& app, const ServoTick& tick) {
     if (tick.contact.is_still || state.awaited_reset) return;
     const Reading& reading = app.resource<Readings>().last;
     state.lesson.update(reading, app.resource<SettingsState>().now.coupling.mode, state.measured);
-    if (!state.lesson.steps().empty()) state.curve.add(reading);
+    if (!state.lesson.steps().empty())
+        state.curve.add(reading, tick.contact.molecule.place_angstrom, tick.contact.grip_number);
 }
 
 void restart_lesson(World& app) {
     LessonState& state = app.write<LessonState>();
     state.lesson.restart();
+    state.was_skipped = false;
     state.curve.clear();
     set_mode(app, coupling_of(scene_of(app), app.resource<SettingsState>().now.hand).mode);
     state.awaited_reset = frame_of(app).readout.resets + 1;
@@ -62,7 +72,19 @@ void restart_lesson(World& app) {
 }
 
 void go_on_in_lesson(World& app) {
-    if (is_panel_open(app, "lesson")) app.write<LessonState>().lesson.go_on();
+    if (!is_panel_open(app, "lesson")) return;
+    Lesson& lesson = app.write<LessonState>().lesson;
+    const std::optional<NextLesson>& next = options_of(app).lesson.next;
+    if (!lesson.is_done())
+        (void)lesson.go_on();
+    else if (next)
+        ask_to_leave(app, NextScreen{{next->file}});
+}
+
+void skip_step(World& app) {
+    LessonState& state = app.write<LessonState>();
+    state.was_skipped = true;
+    state.lesson.skip();
 }
 
 }  // namespace palpa

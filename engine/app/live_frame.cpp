@@ -89,6 +89,8 @@ LiveFrame LiveFrameBuilder::build(const LiveSimulation& simulation) {
         frame.readout.error_pN = accuracy->error();
         frame.readout.work_budget = accuracy->work_budget();
     }
+    if (const std::optional<Snap> snap = find_last_snap(world))
+        frame.readout.snap_step = snap->step;
     frame.readout.playback = find_playback(world);
     update_values(world, objects_);
     frame.objects = objects_;

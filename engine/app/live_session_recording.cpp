@@ -14,6 +14,7 @@
 #include <vector>
 
 namespace palpa {
+
 void LiveSession::begin_recording(const std::filesystem::path& folder, bool overwrites,
                                   const std::optional<TrajectorySettings>& trajectory) {
     const std::lock_guard lock(recorder_mutex_);

@@ -19,7 +19,7 @@ namespace palpa {
 
 extern const Panel tree_panel, inspector_panel, hand_panel, coupling_panel, plots_panel,
     machine_panel, lesson_panel, time_line_panel, select_panel, messages_panel, keys_panel,
-    search_panel;
+    search_panel, picture_panel;
 
 namespace {
 
@@ -36,6 +36,7 @@ constexpr const Panel* panels[] = {
     &messages_panel,   // all messages so far
     &keys_panel,       // keys and mouse
     &search_panel,     // every action and scene key
+    &picture_panel,    // to be saved without panels
 };
 
 constexpr std::array<std::string_view, 3> side_names{"left", "right", "bottom"};

@@ -77,10 +77,11 @@ std::optional<std::vector<std::string>> read_texts(const toml::node& value) {
     return texts;
 }
 
-bool read_panels(const toml::node& value, Preferences& preferences) {
-    const std::optional<std::vector<std::string>> panels = read_texts(value);
-    preferences.panels = panels.value_or(std::vector<std::string>());
-    return panels.has_value();
+template <auto Field>
+bool read_list(const toml::node& value, Preferences& preferences) {
+    const std::optional<std::vector<std::string>> texts = read_texts(value);
+    preferences.*Field = texts.value_or(std::vector<std::string>());
+    return texts.has_value();
 }
 
 // One scene, as versions before had it, or several.
@@ -96,7 +97,7 @@ bool read_recent(const toml::node& value, Preferences& preferences) {
     return true;
 }
 
-constexpr std::array<Preference, 12> known_keys{
+constexpr std::array<Preference, 14> known_keys{
     {{"device", read_text<&Preferences::device>,
       "device is not text; expected a device name in quotes, such as \"mouse\""},
      {"sound", read_flag<&Preferences::sound>, "sound is not true or false; expected one of them"},
@@ -111,7 +112,11 @@ constexpr std::array<Preference, 12> known_keys{
      {"window_size", read_window_size, "window_size is not two whole numbers from 200 to 20000"},
      {"dark_theme", read_flag<&Preferences::dark_theme>,
       "dark_theme is not true or false; expected one of them"},
-     {"panels", read_panels, "panels is not a list of texts, such as [\"left 240\"]"},
+     {"folder", read_text<&Preferences::folder>, "folder is not text; expected a folder in quotes"},
+     {"lessons_done", read_list<&Preferences::lessons_done>,
+      "lessons_done is not a list of texts, such as [\"water\"]"},
+     {"panels", read_list<&Preferences::panels>,
+      "panels is not a list of texts, such as [\"left 240\"]"},
      {"download_from", read_text<&Preferences::download_from>,
       "download_from is not text; expected an address in quotes that begins with https://"},
      {"download_stall_seconds", read_stall_seconds,
@@ -170,6 +175,8 @@ std::string format_preferences(const Preferences& preferences) {
         table.insert(key, std::move(array));
     };
     insert_texts("recent", preferences.recent);
+    if (preferences.folder) table.insert("folder", *preferences.folder);
+    insert_texts("lessons_done", preferences.lessons_done);
     insert_texts("panels", preferences.panels);
     if (preferences.hand_explained) table.insert("hand_explained", true);
     if (preferences.text_scale) table.insert("text_scale", *preferences.text_scale);
@@ -197,11 +204,11 @@ std::optional<fs::path> find_prepared_folder() {
     return std::nullopt;
 }
 
-std::optional<fs::path> find_structure_cache() {
-    const fs::path name = fs::path("palpa") / "structures";
-    if (const auto folder = find_folder("XDG_CACHE_HOME")) return *folder / name;
-    if (const auto folder = find_folder("LOCALAPPDATA")) return *folder / name;
-    if (const auto folder = find_folder("HOME")) return *folder / ".cache" / name;
+std::optional<fs::path> find_cache_folder(std::string_view name) {
+    const fs::path below = fs::path("palpa") / name;
+    if (const auto folder = find_folder("XDG_CACHE_HOME")) return *folder / below;
+    if (const auto folder = find_folder("LOCALAPPDATA")) return *folder / below;
+    if (const auto folder = find_folder("HOME")) return *folder / ".cache" / below;
     return std::nullopt;
 }
 

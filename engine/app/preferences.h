@@ -10,11 +10,13 @@
 namespace palpa {
 
 struct Preferences {
-    std::optional<std::string> device{};  // name for --device
-    std::optional<bool> sound{};          // force as a tone on or off
-    std::vector<std::string> recent{};    // scenes opened before, absolute paths, newest first
-    bool hand_explained = false;          // the signs of the hand were explained in the window
-    std::optional<double> text_scale{};   // scale of the window's text, relative to the display's
+    std::optional<std::string> device{};      // name for --device
+    std::optional<bool> sound{};              // force as a tone on or off
+    std::vector<std::string> recent{};        // scenes opened before, absolute paths, newest first
+    std::optional<std::string> folder{};      // in which a file was looked for last
+    std::vector<std::string> lessons_done{};  // names of Palpa's own, paths of others
+    bool hand_explained = false;              // the signs of the hand were explained in the window
+    std::optional<double> text_scale{};  // scale of the window's text, relative to the display's
     std::optional<std::array<int, 2>> window_size{};  // in the display's own units
     std::optional<bool> dark_theme{};                 // dark or light panels and background
     std::vector<std::string> panels{};                // as the window left them (app/panels.h)
@@ -43,9 +45,9 @@ std::optional<std::filesystem::path> find_preferences_file();
 // Windows; empty if none is set.
 std::optional<std::filesystem::path> find_prepared_folder();
 
-// Folder for downloaded structures: palpa/structures below XDG_CACHE_HOME, ~/.cache, or
-// LOCALAPPDATA on Windows; empty if none is set.
-std::optional<std::filesystem::path> find_structure_cache();
+// Folder for what can be had again: palpa/NAME below XDG_CACHE_HOME, ~/.cache, or LOCALAPPDATA on
+// Windows; empty if none is set.
+std::optional<std::filesystem::path> find_cache_folder(std::string_view name);
 
 // Folder for what the window saves: Palpa in the user's documents, which are XDG_DOCUMENTS_DIR,
 // what user-dirs.dirs says, or Documents at home if that is there; without these, home, or the

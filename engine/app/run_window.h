@@ -7,6 +7,7 @@
 #include "haptics/device.h"
 #include "haptics/hand.h"
 #include "haptics/servo.h"
+#include "render/picture.h"
 #include "scene/description.h"
 #include "session/commands.h"
 #include "session/statistics.h"
@@ -65,6 +66,17 @@ struct SoundChoice {
     std::function<void(bool)> remember{};  // saves the person's choice; throws LoadError
 };
 
+// The lesson after this one.
+struct NextLesson {
+    std::string title;
+    std::filesystem::path file;
+};
+
+struct LessonChoice {
+    std::optional<NextLesson> next{};           // none: every other lesson is done
+    std::function<void(bool)> remember_done{};  // saves that this one is done; throws LoadError
+};
+
 struct WindowOptions {
     ViewSettings view{};
     std::filesystem::path files_folder{"."};  // of what is saved; made when it is needed
@@ -85,6 +97,7 @@ struct WindowOptions {
     PadLink* pads = nullptr;  // where game pads are posted
     DeviceMenu devices{};
     SoundChoice sound{};
+    LessonChoice lesson{};  // of a scene with a lesson
     // Whether the signs of the hand (ring, thread, bar) were explained before; saves that they
     // were.
     bool is_hand_explained = false;
@@ -95,6 +108,9 @@ struct WindowOptions {
     // Saves the world with this view as a scene, and returns where; throws LoadError. Empty: saving
     // is not possible.
     std::function<std::string(const World&, const ViewDescription&)> save{};
+    // Keeps a small picture of the scene as it was left, for the start screen; throws LoadError.
+    // Empty: the scene has one.
+    std::function<void(const Picture&)> keep_picture{};
     // The same for crash recovery, without a message. Empty: not done.
     std::function<void(const World&, const ViewDescription&)> save_for_crash{};
     std::string notice{};           // shown at the start
@@ -112,8 +128,9 @@ struct WindowOptions {
 // What the person opens after a scene.
 struct NextScreen {
     std::vector<std::filesystem::path> files{};  // files to open
-    std::string
-        code{};  // PDB entry to download and open, with the files; neither: the start screen
+    // PDB entry to download and open, with the files; neither: the start screen.
+    std::string code{};
+    std::filesystem::path left{};  // the scene before
 
     bool is_start() const noexcept { return files.empty() && code.empty(); }
 };

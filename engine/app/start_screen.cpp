@@ -1,7 +1,6 @@
 #include "app/start_screen.h"
 
 #include "app/fetch_structure.h"
-#include "app/scene_cards.h"
 #include "core/load_error.h"
 #include "core/translate.h"
 #include "render/picture_sheet.h"
@@ -9,9 +8,11 @@
 #include "ui/file_browser.h"
 #include "ui/language_list.h"
 #include "ui/layout.h"
+#include "ui/text_field.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,8 +26,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr float card_width = 200, picture_height = 125, card_text_height = 92;
+constexpr float mark_radius = 11;
 constexpr double frames_per_s = 60;
-constexpr ImU32 chosen_edge = IM_COL32(60, 120, 210, 255), card_edge = IM_COL32(150, 160, 175, 255);
+constexpr ImU32 chosen_edge = IM_COL32(60, 120, 210, 255), card_edge = IM_COL32(150, 160, 175, 255),
+                mark_colour = IM_COL32(255, 255, 255, 255);
+
+// In the order of CardGroup.
+constexpr std::array<const char*, card_groups> group_names{
+    for_translation("Lessons"), for_translation("Explore"), for_translation("Research"),
+    for_translation("Yours")};
 
 // What a scene's level may be.
 [[maybe_unused]] constexpr std::array levels{
@@ -59,35 +67,44 @@ private:
     bool frame();
     void take_input();
     void press(const KeyPress& press);
-    void move(int by);
+    void move(int right, int down);
     void open_chosen();
     void open(const fs::path& file);
+    void go_back();
     void fetch(const std::optional<std::string>& code);
     void browse();
     void describe();
     void draw_header();
+    void find_seen();
     void draw_cards();
     void draw_card(std::size_t number, float width);
+    void draw_done_mark(const ImVec2& place);
     void draw_side();
+    void draw_sound_question();
     void draw_recovered();
     void draw_recent();
     void draw_devices();
+    void draw_messages();
     void choose_device(const std::string& name);
+    void choose_sound(bool is_on);
     void load_pictures();
     void drop_pictures();
 
     WindowShell& shell_;
     const StartOptions& options_;
     const SceneCards scenes_;
-    const std::vector<SceneEntry>& cards_ = scenes_.cards;
+    const std::vector<SceneCard>& cards_ = scenes_.cards;
     const Graphics* sheet_of_ = nullptr;
     std::unique_ptr<PictureSheet> sheet_;
     std::vector<CardPicture> shown_;
-    std::size_t chosen_ = 0;  // cards, then recent files
-    bool moved_ = false;      // the choice, by keys
-    bool mouse_moved_ = false;
-    bool closes_list_ = false;
-    std::size_t columns_ = 1;
+    std::string searched_;
+    std::vector<std::size_t> seen_;  // cards that the search finds
+    std::vector<ImVec2> places_;     // of these at the last drawing, on the scrolled page
+    std::size_t chosen_ = 0;         // of these
+    bool moved_ = false;             // the choice, by keys
+    bool closes_list_ = false, wants_search_ = false;
+    bool searches_ = false;  // the search field has the keys
+    bool asks_for_sound_;
     std::string device_, problem_, notice_;
     FileBrowser browser_;
     CodeField code_field_;
@@ -99,10 +116,13 @@ private:
 StartScreen::StartScreen(WindowShell& shell, const StartOptions& options)
     : shell_(shell),
       options_(options),
-      scenes_(list_cards(options.scenes)),
+      scenes_(list_cards(options.cards)),
+      asks_for_sound_(options.asks_for_sound),
       device_(options.device),
       problem_(options.problem) {
     shell.window().set_title("Palpa");
+    const auto next = std::ranges::find(cards_, false, &SceneCard::is_done);
+    if (next != cards_.end()) chosen_ = static_cast<std::size_t>(next - cards_.begin());
 }
 
 std::optional<NextScreen> StartScreen::run() {
@@ -147,7 +167,6 @@ void StartScreen::take_input() {
         drop_pictures();
         shell_.restart_graphics();
     }
-    mouse_moved_ = input.mouse_dx != 0 || input.mouse_dy != 0;
     if (!input.dropped.empty()) next_ = name_screen(input.dropped);
     for (const KeyPress& each : input.pressed) press(each);
 }
@@ -157,7 +176,7 @@ void StartScreen::press(const KeyPress& press) {
         if (press.key == Key::Escape) return browser_.close();
         return browser_.press(press.key);
     }
-    if (ImGui::GetIO().WantTextInput && !(press.control && press.key == Key::Q)) {
+    if (ImGui::GetIO().WantTextInput && !searches_ && !(press.control && press.key == Key::Q)) {
         if (press.key == Key::Enter) code_field_.enter();
         if (press.key == Key::Escape) ImGui::SetWindowFocus(nullptr);  // leaves the field
         return;
@@ -170,35 +189,58 @@ void StartScreen::press(const KeyPress& press) {
     if (press.control && press.key == Key::Minus)
         return scale_text(shell_.text_scale() / text_step);
     if (press.control && press.key == Key::Digit0) return scale_text(1);
-    const auto row = static_cast<int>(chosen_ < cards_.size() ? columns_ : 1);
-    if (press.key == Key::Right) move(1);
-    if (press.key == Key::Left) move(-1);
-    if (press.key == Key::Down) move(row);
-    if (press.key == Key::Up) move(-row);
-    if (press.key == Key::Enter || press.key == Key::Space) open_chosen();
+    if (press.key == Key::Q && press.control) is_over_ = true;
+    if (press.key == Key::F && press.control) wants_search_ = true;
+    if (press.key == Key::Escape) return go_back();
+    if (press.key == Key::Right) move(1, 0);
+    if (press.key == Key::Left) move(-1, 0);
+    if (press.key == Key::Down) move(0, 1);
+    if (press.key == Key::Up) move(0, -1);
+    if (press.key == Key::Enter) open_chosen();
+    if (ImGui::GetIO().WantTextInput) return;
+    if (press.key == Key::Space) open_chosen();
     if (press.key == Key::O) browse();
     if (press.key == Key::P) code_field_.focus();
     if (press.key == Key::V && press.control) fetch(code_field_.paste());
-    if (press.key == Key::Escape && ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) {
+}
+
+// Closes a list, then the search, then goes back to the scene that was left.
+void StartScreen::go_back() {
+    if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) {
         closes_list_ = true;
-    } else if (press.key == Key::Escape) {
+    } else if (!searched_.empty()) {
+        searched_.clear();
+        ImGui::ClearActiveID();
+    } else if (options_.before) {
+        open(options_.before->file);
+    } else {
         notice_ = translated("nothing is open; Ctrl+Q quits");
-    } else if (press.key == Key::Q && press.control) {
-        is_over_ = true;
     }
 }
 
-void StartScreen::move(int by) {
-    const auto last = static_cast<int>(cards_.size() + options_.recent.size()) - 1;
-    chosen_ =
-        static_cast<std::size_t>(std::clamp(static_cast<int>(chosen_) + by, 0, std::max(last, 0)));
+// To the next card in its row, or to the nearest one in the next row.
+void StartScreen::move(int right, int down) {
+    if (seen_.empty() || places_.size() != seen_.size()) return;
     moved_ = true;
+    const auto last = static_cast<int>(seen_.size()) - 1;
+    const ImVec2 from = places_[chosen_];
+    if (right != 0) {
+        chosen_ = static_cast<std::size_t>(std::clamp(static_cast<int>(chosen_) + right, 0, last));
+        return;
+    }
+    std::optional<std::size_t> nearest;
+    const auto way = [&](std::size_t i) {
+        return std::pair(std::abs(places_[i].y - from.y), std::abs(places_[i].x - from.x));
+    };
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        const bool is_there = down > 0 ? places_[i].y > from.y + 1 : places_[i].y < from.y - 1;
+        if (is_there && (!nearest || way(i) < way(*nearest))) nearest = i;
+    }
+    chosen_ = nearest.value_or(chosen_);
 }
 
 void StartScreen::open_chosen() {
-    if (chosen_ < cards_.size()) return open(cards_[chosen_].file);
-    const std::size_t recent = chosen_ - cards_.size();
-    if (recent < options_.recent.size()) open(options_.recent[recent]);
+    if (chosen_ < seen_.size()) open(cards_[seen_[chosen_]].scene.file);
 }
 
 void StartScreen::open(const fs::path& file) { next_ = {{file}}; }
@@ -210,12 +252,13 @@ void StartScreen::fetch(const std::optional<std::string>& code) {
 void StartScreen::browse() {
     std::error_code error;
     browser_.open(translated("Open a structure or a scene"), list_endings(),
-                  fs::current_path(error));
+                  options_.folder.empty() ? fs::current_path(error) : options_.folder);
 }
 
 void StartScreen::describe() {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     shown_.clear();
+    find_seen();
     ImGui::SetNextWindowPos({0, 0});
     ImGui::SetNextWindowSize(screen);
     ImGui::Begin("##start", nullptr,
@@ -223,47 +266,86 @@ void StartScreen::describe() {
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollbar);
     draw_header();
     const float side = std::min(scaled(280), 0.38F * screen.x);
-    ImGui::BeginChild("##cards", {-side - panel_edge(), 0}, false, ImGuiWindowFlags_NoBackground);
+    const float below = 2.2F * ImGui::GetTextLineHeightWithSpacing();
+    ImGui::BeginChild("##cards", {-side - panel_edge(), -below}, false,
+                      ImGuiWindowFlags_NoBackground);
     draw_cards();
     ImGui::EndChild();
     ImGui::SameLine();
-    ImGui::BeginChild("##side", {0, 0}, false);
+    ImGui::BeginChild("##side", {0, -below}, false);
     draw_side();
     ImGui::EndChild();
+    draw_messages();
     ImGui::End();
-    if (const std::optional<fs::path> file = browser_.draw()) open(*file);
+    if (const std::optional<fs::path> file = browser_.draw()) {
+        (void)keep_choice(options_.remember_folder, browser_.folder().string());
+        open(*file);
+    }
     moved_ = closes_list_ = false;
+}
+
+void StartScreen::find_seen() {
+    seen_.clear();
+    for (std::size_t i = 0; i < cards_.size(); ++i)
+        if (has_words(cards_[i].scene, searched_)) seen_.push_back(i);
+    chosen_ = std::min(chosen_, seen_.empty() ? 0 : seen_.size() - 1);
 }
 
 void StartScreen::draw_header() {
     ImGui::SetWindowFontScale(1.6F);
     ImGui::TextUnformatted(translated("Palpa: feel molecules"));
     ImGui::SetWindowFontScale(1);
+    const float field = std::min(scaled(280), 0.38F * ImGui::GetIO().DisplaySize.x);
+    ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - field);
+    ImGui::SetNextItemWidth(field);
+    if (std::exchange(wants_search_, false)) ImGui::SetKeyboardFocusHere();
+    if (type_text("##search", translated("search (Ctrl+F)"), searched_)) chosen_ = 0;
+    searches_ = ImGui::IsItemActive();
     ImGui::TextDisabled(
         "%s", translated("Choose a scene, or open a structure of your own. In a scene: hold Space "
                          "and move the mouse to pull; H lists all keys."));
-    if (options_.recent.empty())
-        ImGui::TextWrapped("%s",
-                           translated("New here? Press Enter: the first card is a tour of two "
-                                      "minutes."));
+    if (chosen_ < seen_.size()) {
+        const std::string& title = cards_[seen_[chosen_]].scene.title;
+        ImGui::TextUnformatted(format_translated("Enter opens: {}", title).c_str());
+    } else {
+        ImGui::TextUnformatted(translated("Nothing has these words; Esc ends the search."));
+    }
+    if (options_.before) {
+        ImGui::SameLine();
+        ImGui::TextDisabled(
+            "%s", format_translated("Esc goes back to: {}", options_.before->title).c_str());
+    }
+    ImGui::Separator();
+}
+
+// In a place of their own, so that nothing moves under the mouse.
+void StartScreen::draw_messages() {
+    ImGui::Separator();
     if (!problem_.empty()) {
         ImGui::PushStyleColor(ImGuiCol_Text, colours().wrong);
         ImGui::TextWrapped("%s", problem_.c_str());
         ImGui::PopStyleColor();
+    } else if (!notice_.empty()) {
+        ImGui::TextWrapped("%s", notice_.c_str());
     }
-    if (!notice_.empty()) ImGui::TextWrapped("%s", notice_.c_str());
-    ImGui::Separator();
 }
 
 void StartScreen::draw_cards() {
     const float gap = scaled(10);
     const float room = ImGui::GetContentRegionAvail().x;
-    columns_ = static_cast<std::size_t>(
+    const auto columns = static_cast<std::size_t>(
         std::max(1.0F, std::floor((room + gap) / (scaled(card_width) + gap))));
-    const auto columns = static_cast<float>(columns_);
-    const float width = std::floor((room - (columns - 1) * gap) / columns);
-    for (std::size_t i = 0; i < cards_.size(); ++i) {
-        if (i % columns_ != 0) ImGui::SameLine(0, gap);
+    const auto gaps = static_cast<float>(columns - 1) * gap;
+    const float width = std::floor((room - gaps) / static_cast<float>(columns));
+    places_.clear();
+    std::size_t in_group = 0;
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+        const CardGroup group = cards_[seen_[i]].group;
+        if (i == 0 || cards_[seen_[i - 1]].group != group) {
+            ImGui::TextUnformatted(translated(group_names[static_cast<std::size_t>(group)]));
+            in_group = 0;
+        }
+        if (in_group++ % columns != 0) ImGui::SameLine(0, gap);
         draw_card(i, width);
     }
     if (cards_.empty())
@@ -272,30 +354,34 @@ void StartScreen::draw_cards() {
 }
 
 void StartScreen::draw_card(std::size_t number, float width) {
-    const SceneEntry& scene = cards_[number];
+    const SceneCard& card = cards_[seen_[number]];
+    const SceneEntry& scene = card.scene;
     const float high = width * picture_height / card_width;
+    places_.push_back(ImGui::GetCursorPos());
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const ImVec2 end{at.x + width, at.y + high + scaled(card_text_height)};
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 clip_from = list.GetClipRectMin(), clip_to = list.GetClipRectMax();
     const VkExtent2D window = shell_.graphics()->swapchain.size();
-    if (scenes_.picture_numbers[number]) {
+    if (card.picture) {
         const auto pixel = [](float place) { return static_cast<int>(std::lround(place)); };
         const PixelBox all{0, 0, static_cast<int>(window.width), static_cast<int>(window.height)};
         const PixelBox clip{pixel(clip_from.x), pixel(clip_from.y), pixel(clip_to.x),
                             pixel(clip_to.y)};
-        shown_.push_back({*scenes_.picture_numbers[number],
+        shown_.push_back({*card.picture,
                           {pixel(at.x), pixel(at.y), pixel(end.x), pixel(at.y + high)},
                           common(all, clip)});
     }
     ImGui::PushID(static_cast<int>(number));
     ImGui::BeginGroup();
     if (ImGui::InvisibleButton("##card", {width, end.y - at.y})) open(scene.file);
-    const bool is_chosen = number == chosen_;
-    if (ImGui::IsItemHovered() && mouse_moved_) chosen_ = number;
+    const bool is_chosen = number == chosen_, is_pointed_at = ImGui::IsItemHovered();
     if (is_chosen && moved_) ImGui::SetScrollHereY();
     list.AddRectFilled({at.x, at.y + high}, end, colours().ground);
-    list.AddRect(at, end, is_chosen ? chosen_edge : card_edge, 0, 0, scaled(is_chosen ? 3 : 1));
+    list.AddRect(at, end, is_chosen || is_pointed_at ? chosen_edge : card_edge, 0, 0,
+                 scaled(is_chosen ? 3 : 1));
+    if (card.is_done)
+        draw_done_mark({end.x - scaled(mark_radius + 4), at.y + scaled(mark_radius + 4)});
     const float pad = scaled(6);
     const ImVec4 inside{at.x + pad, at.y + high, end.x - pad, end.y - pad / 2};
     ImFont* const font = ImGui::GetFont();
@@ -306,13 +392,25 @@ void StartScreen::draw_card(std::size_t number, float width) {
                      &inside);
         y += font->CalcTextSizeA(height, width, width - 2 * pad, text.c_str()).y;
     };
+    const std::string effort = translated_effort(scene);
     write(scene.title, size, colours().ink);
-    write(translated_effort(scene), small, colours().task);
+    write(card.is_done ? fmt::format("{}, {}", translated("done"), effort) : effort, small,
+          card.is_done ? colours().done : colours().task);
     write(scene.about, small, ImGui::GetColorU32(ImGuiCol_Text, 0.75F));
     ImGui::EndGroup();
-    if (ImGui::IsItemHovered())
-        tip(fmt::format("{}\n{}", scene.about, scene.file.string()).c_str());
+    if (is_pointed_at) tip(fmt::format("{}\n{}", scene.about, scene.file.string()).c_str());
     ImGui::PopID();
+}
+
+void StartScreen::draw_done_mark(const ImVec2& place) {
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const float r = scaled(mark_radius);
+    list.AddCircleFilled(place, r, colours().done);
+    const std::array tick{ImVec2{place.x - 0.5F * r, place.y + 0.05F * r},
+                          ImVec2{place.x - 0.1F * r, place.y + 0.45F * r},
+                          ImVec2{place.x + 0.5F * r, place.y - 0.4F * r}};
+    list.AddPolyline(tick.data(), static_cast<int>(tick.size()), mark_colour, ImDrawFlags_None,
+                     scaled(2));
 }
 
 void StartScreen::draw_side() {
@@ -322,6 +420,7 @@ void StartScreen::draw_side() {
         "%s",
         translated("PDB or mmCIF (also .gz), CHARMM coordinates, or a scene; or drop one here. "
                    "A structure is completed first, which takes a few seconds."));
+    draw_sound_question();
     draw_recovered();
     draw_recent();
     draw_devices();
@@ -330,6 +429,25 @@ void StartScreen::draw_side() {
         notice_ = shell_.change_language(*language);
     ImGui::Separator();
     if (ImGui::Button(labelled("Quit (Ctrl+Q)").c_str())) is_over_ = true;
+}
+
+// Asked until it is answered, here or in a scene.
+void StartScreen::draw_sound_question() {
+    if (!asks_for_sound_) return;
+    ImGui::Separator();
+    ImGui::TextWrapped("%s", translated("Feel without a device: play the force on your hand as a "
+                                        "tone? A game pad shakes with it."));
+    if (ImGui::Button(labelled("Yes").c_str())) choose_sound(true);
+    ImGui::SameLine();
+    if (ImGui::Button(labelled("No").c_str())) choose_sound(false);
+}
+
+void StartScreen::choose_sound(bool is_on) {
+    asks_for_sound_ = false;
+    notice_ = keep_choice(options_.sound.remember, is_on);
+    if (notice_.empty())
+        notice_ = is_on ? translated("The force will be heard; S in a scene turns it off.")
+                        : translated("The force will not be heard; S in a scene turns it on.");
 }
 
 void StartScreen::draw_recovered() {
@@ -350,14 +468,10 @@ void StartScreen::draw_recent() {
     ImGui::TextUnformatted(translated("Opened before"));
     if (options_.recent.empty()) ImGui::TextDisabled("%s", translated("nothing yet"));
     for (std::size_t i = 0; i < options_.recent.size(); ++i) {
-        const fs::path& file = options_.recent[i];
-        // Scenes mostly have the same name; their folders tell them apart.
-        const std::string name = (file.parent_path().filename() / file.filename()).generic_string();
+        const SceneEntry& entry = options_.recent[i];
         ImGui::PushID(static_cast<int>(i));
-        const bool is_chosen = cards_.size() + i == chosen_;
-        if (ImGui::Selectable(name.c_str(), is_chosen)) open(file);
-        if (is_chosen && moved_) ImGui::SetScrollHereY();
-        tip(file.string().c_str());
+        if (ImGui::Selectable(entry.title.c_str())) open(entry.file);
+        tip(entry.file.string().c_str());
         ImGui::PopID();
     }
 }
@@ -386,7 +500,7 @@ void StartScreen::draw_devices() {
         "%s",
         found.empty()
             ? translated("No haptic device was found; choose yours above to see what is missing. "
-                         "The mouse works without one, and sound makes the force audible.")
+                         "The mouse works without one.")
             : format_translated("Found: {}.", found).c_str());
 }
 

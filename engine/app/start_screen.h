@@ -1,8 +1,8 @@
 // What one sees first: scenes to choose from, one's own files, and the device.
 #pragma once
 #include "app/run_window.h"
+#include "app/scene_cards.h"
 #include "app/window_shell.h"
-#include "scene/find_scene.h"
 
 #include <filesystem>
 #include <functional>
@@ -13,15 +13,20 @@
 namespace palpa {
 
 struct StartOptions {
-    std::vector<SceneEntry> scenes{};  // those with a level are shown as cards, with their pictures
+    CardSource cards{};
+    std::optional<SceneEntry> before{};              // the scene that was left for this screen
     std::vector<std::filesystem::path> recovered{};  // changed and not saved before a crash
-    std::vector<std::filesystem::path> recent{};     // opened last, the newest first
+    std::vector<SceneEntry> recent{};                // opened last, the newest first
     std::vector<DeviceOffer> devices{};
     std::string device{};  // the one that is used, of these
     // Chooses another one for the next scene; returns what there is to say of it, and throws
     // LoadError where it cannot be had.
     std::function<std::string(const std::string& name)> choose_device{};
-    std::string problem{};  // why the last file could not be opened
+    std::filesystem::path folder{};  // in which a file was looked for last; empty: the current one
+    std::function<void(const std::string&)> remember_folder{};  // throws LoadError
+    std::string problem{};        // why the last file could not be opened
+    SoundChoice sound{};          // as it was chosen last
+    bool asks_for_sound = false;  // it was never chosen
 };
 
 // Until the person chooses; nothing: they quit. Throws GpuError.

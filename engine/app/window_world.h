@@ -10,6 +10,7 @@
 #include "devices/mouse_lead.h"
 #include "ecs/world.h"
 #include "session/lesson.h"
+#include "sound/pad_rumble.h"
 #include "sound/speaker.h"
 #include "ui/add_panel.h"
 #include "ui/history.h"
@@ -103,9 +104,13 @@ struct DeviceChoice {
     bool has_looked = false;  // for the device that is wanted
 };
 
-// The force as a tone.
+// The force as a tone and as a rumble of a game pad, snaps as clicks.
 struct ForceTone {
-    std::shared_ptr<Speaker> speaker;  // null: off
+    bool is_on = false;
+    std::shared_ptr<Speaker> speaker;   // null: none was found
+    std::shared_ptr<PadRumble> rumble;  // null while it is off
+    std::uint64_t clicks = 0;           // one for each snap so far
+    std::uint64_t snap_step = 0;        // of the last one
 };
 
 // ---- the picture -------------------------------------------------------------------------------
@@ -214,6 +219,8 @@ struct LessonState {
     LessonCurve curve{};
     std::optional<std::uint64_t> awaited_reset{};  // its number, while a restart waits for it
     bool saw_reset = false;                        // in the last readout
+    bool was_skipped = false;                      // a step, since the start
+    bool is_noted = false;                         // that it is done
 };
 
 // Messages for the person: the newest for a while, all of them in the history.

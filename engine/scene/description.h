@@ -286,7 +286,7 @@ struct SceneDescription {
     SceneLevel level = SceneLevel::Unstated;
     double minutes = 0;   // minutes that a person needs; 0: not stated
     std::string made_by;  // command that makes the files; empty: they exist
-    std::string lesson_goal;
+    std::string lesson_goal, lesson_learned;
     ForceFieldDescription force_field;
     std::vector<MoleculeDescription> molecules;  // in the order of the file
     std::vector<StartRestraint> restraints;

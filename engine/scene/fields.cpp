@@ -438,8 +438,8 @@ void visit_lesson_step(FieldVisitor& v, LessonStepDescription& s) {
            s.view);
     choose(v,
            {.key = "plot",
-            .meaning = "plot below the task: the map of map_cells, or the force on the molecule "
-                       "over the distance"},
+            .meaning = "plot beside the task: the map of map_cells; the force on the molecule over "
+                       "the distance, or over the way of what is in hand"},
            lesson_plot_names, s.plot);
     choose(v, {.key = "panel", .meaning = "panel of the window that is opened as the step begins"},
            lesson_panel_names, s.panel);
@@ -611,6 +611,9 @@ void visit_scene(FieldVisitor& v, SceneDescription& scene) {
            scene.made_by);
     v.text({.key = "lesson_goal", .meaning = "what a person can do after the lesson"},
            scene.lesson_goal);
+    v.text({.key = "lesson_learned",
+            .meaning = "what a person has learned, in two sentences, shown after the last step"},
+           scene.lesson_learned);
     visit_engine(v, scene.engine);
     const bool is_remote = scene.engine && !v.is_listing();
     visit_force_field(v, scene.force_field, !is_remote);

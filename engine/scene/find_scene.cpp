@@ -54,25 +54,34 @@ std::string first_sentence(const std::string& text) {
     return std::string(trimmed(sentence));
 }
 
+// Nothing where it is no scene that can be read.
+std::optional<SceneEntry> read_entry(const fs::path& file, const std::string& name) {
+    try {
+        const toml::table table = toml::parse(read_text_file(file), file.string());
+        if (!table.contains("grab") && !table.contains("hand")) return std::nullopt;
+        return SceneEntry{name,
+                          file,
+                          table["title"].value_or(std::string()),
+                          first_sentence(table["about"].value_or(std::string())),
+                          table["level"].value_or(std::string()),
+                          table["minutes"].value_or(0.0),
+                          table.contains("lesson"),
+                          is_to_be_made(table, file.parent_path())};
+    } catch (const toml::parse_error&) {
+        return std::nullopt;
+    } catch (const LoadError&) {
+        return std::nullopt;
+    }
+}
+
 void add_scenes_of(const fs::path& folder, const std::string& prefix,
                    std::vector<SceneEntry>& scenes) {
     for (const fs::path& path : list_folder(folder, most_entries)) {
         if (path.extension() != ".toml") continue;
-        try {
-            const toml::table table = toml::parse(read_text_file(path), path.string());
-            if (!table.contains("grab")) continue;
-            const bool is_usual = path.filename() == usual_name;
-            const std::string name = is_usual ? prefix : prefix + "/" + path.stem().string();
-            scenes.push_back({name, path, table["title"].value_or(std::string()),
-                              first_sentence(table["about"].value_or(std::string())),
-                              table["level"].value_or(std::string()),
-                              table["minutes"].value_or(0.0), table.contains("lesson"),
-                              is_to_be_made(table, folder)});
-        } catch (const toml::parse_error&) {
-            continue;
-        } catch (const LoadError&) {
-            continue;
-        }
+        const bool is_usual = path.filename() == usual_name;
+        const std::string name = is_usual ? prefix : prefix + "/" + path.stem().string();
+        if (std::optional<SceneEntry> entry = read_entry(path, name))
+            scenes.push_back(std::move(*entry));
     }
 }
 
@@ -230,6 +239,16 @@ std::vector<SceneEntry> list_scenes(const fs::path& folder) {
     std::sort(scenes.begin(), scenes.end(),
               [](const SceneEntry& a, const SceneEntry& b) { return a.name < b.name; });
     return scenes;
+}
+
+SceneEntry describe_file(const fs::path& file) {
+    SceneEntry entry{file.string(), file};
+    if (file.extension() == ".toml")
+        if (std::optional<SceneEntry> read = read_entry(file, file.string()))
+            entry = std::move(*read);
+    if (entry.title.empty())
+        entry.title = (file.parent_path().filename() / file.filename()).generic_string();
+    return entry;
 }
 
 fs::path find_scene_file(const fs::path& named) {

@@ -31,6 +31,10 @@ std::vector<std::filesystem::path> own_scene_folders();
 // left out.
 std::vector<SceneEntry> list_scenes(const std::filesystem::path& folder);
 
+// A scene file as an entry, whose name is its path; its title is the name of its folder where it
+// has none, or is no scene: a structure, a recorded session.
+SceneEntry describe_file(const std::filesystem::path& file);
+
 // Whether the file's ending is that of a structure: .pdb, .cif, .crd and others, also with .gz.
 bool is_structure(const std::filesystem::path& file);
 

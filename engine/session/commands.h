@@ -97,6 +97,7 @@ struct Readout {
     WorkBudget work_budget;
     bool paused = false;
     bool holds_something = true;      // the hand
+    std::uint64_t snap_step = 0;      // of the last snap, a minimum that vanished; 0: none yet
     std::uint64_t resets = 0;         // so far, those that failed too
     std::uint64_t refused_edits = 0;  // so far, but for undo and redo
     std::string problem;              // why the last Reset or edit failed; else empty

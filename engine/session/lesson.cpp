@@ -54,6 +54,7 @@ void Lesson::update(const Reading& reading, CouplingMode mode,
             if (current_ < measured.size() && std::isfinite(measured[current_]))
                 value_ = measured[current_];
     }
+    if (!start_) start_ = value_;
     if (step_done_) return;
     const bool holds = value_ && (!step.at_least || *value_ >= *step.at_least) &&
                        (!step.at_most || *value_ <= *step.at_most);
@@ -85,6 +86,7 @@ void Lesson::begin_step() noexcept {
     step_done_ = false;
     held_s_ = shown_s_ = 0;
     value_.reset();
+    start_.reset();
     chosen_.reset();
     felt_N_.clear();
     ripple_N_.reset();

@@ -35,6 +35,8 @@ public:
     double share() const noexcept;
     // Value of the present step at the last tick; unset for a question, and while unknown.
     std::optional<double> value() const noexcept { return value_; }
+    // Its first value since the step began; unset while unknown.
+    std::optional<double> start() const noexcept { return start_; }
     // The last answer to the present step's question.
     std::optional<std::size_t> chosen() const noexcept { return chosen_; }
 
@@ -54,7 +56,7 @@ private:
     std::size_t current_ = 0;
     bool step_done_ = false;
     double held_s_ = 0, shown_s_ = 0;
-    std::optional<double> value_;
+    std::optional<double> value_, start_;
     std::optional<std::size_t> chosen_;
     std::vector<double> felt_N_;  // forces since the step began, at most twice ripple_s
     std::optional<double> ripple_N_;

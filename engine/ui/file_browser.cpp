@@ -9,7 +9,9 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstdint>
 #include <cstdlib>
 #include <system_error>
 #include <utility>
@@ -32,7 +34,28 @@ fs::path home_folder() {
     return fs::current_path();
 }
 
+// Folders that a person knows by name; those that are there.
+struct Place {
+    const char* name;
+    const char* below_home;
+};
+constexpr std::array places{
+    Place{for_translation("Home folder"), ""}, Place{for_translation("Documents"), "Documents"},
+    Place{for_translation("Downloads"), "Downloads"}, Place{for_translation("Desktop"), "Desktop"}};
+
+// "512 B", "12 kB", "3.4 MB".
+std::string describe_size(std::uintmax_t bytes) {
+    constexpr double kilo = 1000;
+    if (bytes < 1000) return fmt::format("{} B", bytes);
+    if (bytes < 1'000'000) return fmt::format("{:.0f} kB", static_cast<double>(bytes) / kilo);
+    return fmt::format("{:.1f} MB", static_cast<double>(bytes) / (kilo * kilo));
+}
+
 }  // namespace
+
+std::string FileBrowser::chosen() const {
+    return chosen_ < entries_.size() ? entries_[chosen_].name : std::string();
+}
 
 void FileBrowser::open(std::string title, std::vector<std::string> endings,
                        const fs::path& folder) {
@@ -77,8 +100,12 @@ void FileBrowser::go_to(const fs::path& folder) {
     for (const fs::path& path : paths) {
         const std::string name = path.filename().string();
         if (name.starts_with('.')) continue;
-        const bool is_folder = fs::is_directory(path, error);
-        if (is_folder || is_wanted(path)) entries_.push_back({name, is_folder});
+        if (fs::is_directory(path, error)) {
+            entries_.push_back({name, {}, true});
+        } else if (is_wanted(path)) {
+            const std::uintmax_t bytes = fs::file_size(path, error);
+            entries_.push_back({name, error ? "" : describe_size(bytes), false});
+        }
     }
     std::ranges::stable_partition(entries_, &Entry::is_folder);
 }
@@ -97,9 +124,32 @@ std::optional<fs::path> FileBrowser::choose(const fs::path& path) {
 void FileBrowser::draw_places() {
     if (ImGui::Button(labelled("Up").c_str())) go_to(folder_.parent_path());
     ImGui::SameLine();
-    if (ImGui::Button(labelled("Home").c_str())) go_to(home_folder());
-    ImGui::SameLine();
+    for (const Place& place : places) {
+        const fs::path folder = home_folder() / place.below_home;
+        std::error_code error;
+        if (!fs::is_directory(folder, error)) continue;
+        if (ImGui::Button(labelled(place.name).c_str())) go_to(folder);
+        ImGui::SameLine();
+    }
     if (ImGui::Checkbox(labelled("all files").c_str(), &shows_all_)) go_to(folder_);
+}
+
+// Letters that follow each other within a second are one word.
+void FileBrowser::follow_typing(bool types_path) {
+    constexpr double pause_s = 1;
+    const ImGuiIO& io = ImGui::GetIO();
+    if (types_path || io.InputQueueCharacters.empty()) return;
+    if (ImGui::GetTime() - typed_at_s_ > pause_s) ahead_.clear();
+    typed_at_s_ = ImGui::GetTime();
+    for (const ImWchar letter : io.InputQueueCharacters)
+        if (letter > ' ' && letter < 127) ahead_ += static_cast<char>(letter);
+    const std::string wanted = in_small_letters(ahead_);
+    const auto found = std::ranges::find_if(entries_, [&](const Entry& entry) {
+        return in_small_letters(entry.name).starts_with(wanted);
+    });
+    if (found == entries_.end()) return;
+    chosen_ = static_cast<std::size_t>(found - entries_.begin());
+    moved_ = true;
 }
 
 std::optional<fs::path> FileBrowser::draw_entries() {
@@ -121,7 +171,11 @@ std::optional<fs::path> FileBrowser::draw_entries() {
                 chosen_ = i;
                 if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) opened = entry.name;
             }
-            if (i == chosen_ && steps_ != 0) ImGui::SetScrollHereY();
+            if (i == chosen_ && (steps_ != 0 || moved_)) ImGui::SetScrollHereY();
+            if (entry.size.empty()) continue;
+            ImGui::SameLine(ImGui::GetContentRegionMax().x -
+                            ImGui::CalcTextSize(entry.size.c_str()).x);
+            ImGui::TextDisabled("%s", entry.size.c_str());
         }
         if (is_cut_off_)
             ImGui::TextDisabled("%s", translated("there are more files: type the name above"));
@@ -130,6 +184,7 @@ std::optional<fs::path> FileBrowser::draw_entries() {
         ImGui::EndListBox();
     }
     steps_ = 0;
+    moved_ = false;
     return opened;
 }
 
@@ -151,6 +206,7 @@ std::optional<fs::path> FileBrowser::draw() {
         wants_enter_ = false;
     }
     const bool types = ImGui::IsItemActive();
+    follow_typing(types);
     if (std::optional<fs::path> opened = draw_entries()) wanted = folder_ / *opened;
     const bool may_open = chosen_ < entries_.size();
     ImGui::BeginDisabled(!may_open);

@@ -1,27 +1,57 @@
 #include "ui/hand_sign.h"
 
+#include "core/translate.h"
 #include "render/renderer.h"
 #include "ui/colours.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <span>
+#include <utility>
 
 namespace palpa {
 namespace {
 
-constexpr ImU32 bar_empty = IM_COL32(200, 205, 212, 255), bar_full = IM_COL32(196, 84, 12, 255);
-constexpr float above = 90, bar_width = 84, bar_height = 9,
-                sign_pad = 5;  // pixels at the usual text
+constexpr ImU32 bar_empty = IM_COL32(200, 205, 212, 255),
+                arrow_colour = IM_COL32(196, 84, 12, 255);    // of the arrow of the force
+constexpr float above = 110, bar_width = 84, bar_height = 9;  // pixels at the usual text
+constexpr float sign_pad = 5;
 
-// Draws text on its ground.
-void draw_sign_text(ImDrawList& list, const ImVec2& at, const std::string& text) {
-    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-    const float gap = scaled(sign_pad);
-    list.AddRectFilled({at.x - gap, at.y - 0.4F * gap},
-                       {at.x + size.x + gap, at.y + size.y + 0.4F * gap}, colours().ground, gap);
-    list.AddText(at, colours().ink, text.c_str());
+struct Bar {
+    const char* name;
+    double value, most;
+    ImU32 colour;
+    std::string text;
+};
+
+// Draws them one below the other, names at the left and values at the right, on one ground.
+void draw_bars(ImDrawList& list, const ImVec2& at, std::span<const Bar> bars) {
+    const float width = scaled(bar_width), height = scaled(bar_height), pad = scaled(sign_pad);
+    const float line = ImGui::GetFontSize() + 0.6F * pad;
+    float names = 0, texts = 0;
+    for (const Bar& bar : bars) {
+        names = std::max(names, ImGui::CalcTextSize(bar.name).x);
+        texts = std::max(texts, ImGui::CalcTextSize(bar.text.c_str()).x);
+    }
+    const ImVec2 end{at.x + names + width + texts + 4 * pad,
+                     at.y + line * static_cast<float>(bars.size()) + pad};
+    list.AddRectFilled(at, end, colours().ground, pad);
+    ImVec2 corner{at.x + pad, at.y + 0.5F * pad};
+    for (const Bar& bar : bars) {
+        const double share = bar.most > 0 ? std::clamp(bar.value / bar.most, 0.0, 1.0) : 0;
+        const ImVec2 from{corner.x + names + pad, corner.y + 0.5F * (line - height)};
+        list.AddText(corner, colours().ink, bar.name);
+        list.AddRectFilled({from.x - 1, from.y - 1}, {from.x + width + 1, from.y + height + 1},
+                           colours().ink);
+        list.AddRectFilled(from, {from.x + width, from.y + height}, bar_empty);
+        list.AddRectFilled(from, {from.x + static_cast<float>(share) * width, from.y + height},
+                           bar.colour);
+        list.AddText({from.x + width + pad, corner.y}, colours().ink, bar.text.c_str());
+        corner.y += line;
+    }
 }
 
 }  // namespace
@@ -32,21 +62,18 @@ void draw_hand_sign(const HandSign& sign, const FrameCamera& camera, const Scree
         project(camera, sign.place, static_cast<std::uint32_t>(std::max(screen.x, 1.0F)),
                 static_cast<std::uint32_t>(std::max(screen.y, 1.0F)));
     if (!(seen.z > camera.near) || area.width() <= 0) return;
-    ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    const float width = scaled(bar_width), height = scaled(bar_height), edge = panel_edge();
-    const float right = std::max(area.left + edge, area.right - edge - 2 * width);
+    const float width = scaled(bar_width), edge = panel_edge();
+    const float right = std::max(area.left + edge, area.right - edge - 3 * width);
     const float bottom = std::max(area.top + edge, area.bottom - edge - 6 * ImGui::GetFontSize());
-    ImVec2 at{std::clamp(seen.x - 0.5F * width, area.left + edge, right),
-              std::clamp(seen.y - scaled(above), area.top + edge, bottom)};
-    const double share =
-        sign.most_newton > 0 ? std::clamp(sign.newton / sign.most_newton, 0.0, 1.0) : 0;
-    list.AddRectFilled({at.x - 1, at.y - 1}, {at.x + width + 1, at.y + height + 1}, colours().ink);
-    list.AddRectFilled(at, {at.x + width, at.y + height}, bar_empty);
-    list.AddRectFilled(at, {at.x + static_cast<float>(share) * width, at.y + height}, bar_full);
-    at.y += height + scaled(sign_pad);
-    std::string text = fmt::format("{:.2f} N", sign.newton);
-    if (!sign.reason.empty()) text += ", " + sign.reason;
-    draw_sign_text(list, at, text);
+    const ImVec2 at{std::clamp(seen.x - 1.2F * width, area.left + edge, right),
+                    std::clamp(seen.y - scaled(above), area.top + edge, bottom)};
+    std::string felt = fmt::format("{:.2f} N", sign.newton);
+    if (!sign.reason.empty()) felt += ", " + sign.reason;
+    const std::array bars{Bar{translated("molecule"), sign.molecule_nN, sign.most_nN, arrow_colour,
+                              fmt::format("{:.2f} nN", sign.molecule_nN)},
+                          Bar{translated("your hand"), sign.newton, sign.most_newton,
+                              colours().hand, std::move(felt)}};
+    draw_bars(*ImGui::GetBackgroundDrawList(), at, bars);
 }
 
 }  // namespace palpa

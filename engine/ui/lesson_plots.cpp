@@ -1,15 +1,18 @@
 #include "ui/lesson_plots.h"
 
+#include "core/translate.h"
 #include "ui/colours.h"
 #include "ui/layout.h"
 #include "ui/plot.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <string_view>
+#include <utility>
 
 namespace palpa {
 namespace {
@@ -20,31 +23,61 @@ constexpr ImU32 here_colour = IM_COL32(210, 60, 40, 255);
 
 // In the order of LessonQuantity.
 struct QuantityWords {
-    std::string_view name, unit;
+    const char* name;
+    std::string_view unit;
 };
 constexpr std::array<QuantityWords, lesson_quantity_names.size()> quantity_words{
-    {{"distance", " Å"},
-     {"force on the molecule", " nN"},
-     {"force on the hand", " N"},
-     {"mode", ""},
-     {"ripple", " N"},
-     {"distance", " Å"},
-     {"dihedral", "°"},
-     {"hydrogen bonds", ""},
-     {"cells visited", ""},
-     {"way", " Å"},
-     {"work", " kcal/mol"},
-     {"energy", " kcal/mol"}}};
+    {{for_translation("distance"), " Å"},
+     {for_translation("force on the molecule"), " nN"},
+     {for_translation("push on your hand"), " N"},
+     {for_translation("mode"), ""},
+     {for_translation("the force shakes by"), " N"},
+     {for_translation("distance"), " Å"},
+     {for_translation("angle"), "°"},
+     {for_translation("hydrogen bonds"), ""},
+     {for_translation("fields visited"), ""},
+     {for_translation("way"), " Å"},
+     {for_translation("your work"), " kcal/mol"},
+     {for_translation("energy"), " kcal/mol"}}};
+
+std::string letter_of(std::size_t answer) {
+    return std::string(1, static_cast<char>('A' + static_cast<int>(answer)));
+}
 
 }  // namespace
 
-std::string describe_value(const LessonStepDescription& step, double value) {
+LessonGoal describe_goal(const LessonStepDescription& step, double value, double start) {
+    std::optional<double> least = step.at_least, most = step.at_most;
     const auto& [name, unit] = quantity_words[static_cast<std::size_t>(step.quantity)];
-    std::string wanted;
-    if (step.at_least) wanted = fmt::format("at least {:.4g}", *step.at_least);
-    if (step.at_most)
-        wanted += fmt::format("{}at most {:.4g}", step.at_least ? ", " : "", *step.at_most);
-    return fmt::format("{} {:.3g}{} ({})", name, value, unit, wanted);
+    std::string title = translated(name);
+    // A force that must be below 0 attracts: it is a pull of so many newtons.
+    const bool is_force =
+        step.quantity == LessonQuantity::Force || step.quantity == LessonQuantity::FeltForce;
+    if (is_force && most && *most <= 0) {
+        value = -value;
+        start = -start;
+        std::swap(least, most);
+        if (least) *least = -*least;
+        if (most) *most = -*most;
+        title = step.quantity == LessonQuantity::Force ? translated("pull on the molecule")
+                                                       : translated("pull on your hand");
+    }
+    constexpr double rounding = 1e-3;
+    LessonGoal goal;
+    const double shown = std::abs(value) < rounding ? 0 : value;
+    goal.now = fmt::format("{}: {:.3g}{}", title, shown, unit);
+    if (least && most && *least == *most)
+        goal.goal = format_translated("goal: {:.4g}{}", *least, unit);
+    else if (least && most)
+        goal.goal = format_translated("goal: {:.4g} to {:.4g}{}", *least, *most, unit);
+    else if (least)
+        goal.goal = format_translated("goal: {:.4g}{} or more", *least, unit);
+    else if (most)
+        goal.goal = format_translated("goal: {:.4g}{} or less", *most, unit);
+    const double nearest = least && value < *least ? *least : most && value > *most ? *most : value;
+    const double way = std::abs(nearest - start), left = std::abs(nearest - value);
+    goal.share = left == 0 ? 1 : way == 0 ? 0 : std::clamp(1 - left / way, 0.0, 1.0);
+    return goal;
 }
 
 std::optional<std::size_t> draw_lesson_question(const LessonQuestion& question,
@@ -52,19 +85,29 @@ std::optional<std::size_t> draw_lesson_question(const LessonQuestion& question,
     std::optional<std::size_t> pressed;
     ImGui::TextWrapped("%s", question.text.c_str());
     for (std::size_t i = 0; i < question.answers.size(); ++i) {
-        const std::string button =
-            fmt::format("{}##answer", static_cast<char>('A' + static_cast<int>(i)));
+        const std::string text = fmt::format("{}  {}", letter_of(i), question.answers[i]);
+        const ImVec2 pad{scaled(6), scaled(3)};
+        const ImVec2 corner = ImGui::GetCursorPos();
+        const float width = ImGui::GetContentRegionAvail().x;
+        const float high = ImGui::CalcTextSize(text.c_str(), nullptr, false, width - 2 * pad.x).y;
         ImGui::PushID(static_cast<int>(i));
-        if (ImGui::Button(button.c_str())) pressed = i;
+        if (ImGui::Selectable("##answer", chosen == i, 0, {width, high + 2 * pad.y})) pressed = i;
         ImGui::PopID();
-        ImGui::SameLine();
-        ImGui::TextWrapped("%s", question.answers[i].c_str());
+        const ImVec2 after = ImGui::GetCursorPos();
+        ImGui::GetWindowDrawList()->AddRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(),
+                                            ImGui::GetColorU32(ImGuiCol_Border));
+        ImGui::SetCursorPos({corner.x + pad.x, corner.y + pad.y});
+        ImGui::PushTextWrapPos(corner.x + width - pad.x);
+        ImGui::TextUnformatted(text.c_str());
+        ImGui::PopTextWrapPos();
+        ImGui::SetCursorPos(after);
     }
     if (!chosen || *chosen >= question.why.size()) return pressed;
     const bool is_right = *chosen + 1 == static_cast<std::size_t>(question.right);
     ImGui::PushStyleColor(ImGuiCol_Text, is_right ? colours().done : colours().wrong);
-    ImGui::TextWrapped("%c: %s %s", static_cast<char>('A' + static_cast<int>(*chosen)),
-                       is_right ? "Right." : "Not correct.", question.why[*chosen].c_str());
+    ImGui::TextWrapped("%s: %s %s", letter_of(*chosen).c_str(),
+                       is_right ? translated("Right.") : translated("Not correct."),
+                       question.why[*chosen].c_str());
     ImGui::PopStyleColor();
     return pressed;
 }
@@ -96,24 +139,32 @@ void draw_lesson_map(const LessonMeasures& measures) {
                                   .c_str());
 }
 
-void LessonCurve::add(const Reading& reading) {
+void LessonCurve::add(const Reading& reading, const Vec3& place_angstrom,
+                      std::uint32_t grip_number) {
     constexpr double least_way = 0.05;  // Å
     constexpr std::size_t most = 4000;
-    const double way = reading.distance_angstrom;
-    if (!angstrom_.empty() && std::abs(way - angstrom_.back()) < least_way) return;
-    if (angstrom_.size() >= most) clear();
-    angstrom_.push_back(way);
+    if (nN_.size() >= most || (start_ && grip_number != grip_number_)) clear();
+    const bool is_first = !start_;
+    if (is_first) start_ = place_angstrom;
+    grip_number_ = grip_number;
+    if (!is_first && (place_angstrom - last_).norm() < least_way) return;
+    last_ = place_angstrom;
+    distance_angstrom_.push_back(reading.distance_angstrom);
+    way_angstrom_.push_back((place_angstrom - *start_).norm());
     nN_.push_back(reading.molecular_nN);
 }
 
-void LessonCurve::draw() const {
-    if (angstrom_.empty()) return;
-    const std::array lines{PlotLine{angstrom_, nN_, colours().molecule, {}}};
-    const std::array points{PlotPoint{angstrom_.back(), nN_.back(), here_colour}};
+void LessonCurve::draw(LessonPlot plot, float height) const {
+    if (nN_.empty()) return;
+    const bool is_way = plot == LessonPlot::Way;
+    const std::vector<double>& angstrom = is_way ? way_angstrom_ : distance_angstrom_;
+    const std::array lines{PlotLine{angstrom, nN_, colours().molecule, {}}};
+    const std::array points{PlotPoint{angstrom.back(), nN_.back(), here_colour}};
     draw_plot("lesson force",
-              {"distance (Å)", "force (nN)", range_around(angstrom_, 1), range_around(nN_, 0.2),
-               lines, points},
-              scaled(90) + plot_label_height(true));
+              {is_way ? translated("way (Å)") : translated("distance (Å)"),
+               translated("force on the molecule (nN)"), range_around(angstrom, 1),
+               range_around(nN_, 0.2), lines, points},
+              height);
 }
 
 }  // namespace palpa

@@ -20,9 +20,10 @@ BEFORE = {"undo": ["4"], "redo": ["4", "ctrl+z"], "tour": ["shift+w"]}
 AFTER = {"export": ["Escape"], "film": ["m"], "record": ["F9"], "redo": ["ctrl+z"], "add": ["Escape"],
          "release": ["ctrl+z"], "panels": ["Tab"], "next-device": ["Escape"], "larger-text": ["ctrl+0"],
          "smaller-text": ["ctrl+0"], "select": ["Escape"], "pause": ["p"], "step": ["p"],
-         "tour": ["u"], "lesson": ["l"], "search": ["Escape"], "keys": ["Escape"]}
+         "tour": ["u"], "lesson": ["l"], "picture": ["Escape"], "measure": ["i"], "search": ["Escape"], "keys": ["Escape"]}
 ENDS = {"open", "quit"}  # end the scene, and are worked in windows of their own
 OF_TRAJECTORIES = {"play-trajectory", "trajectory-start"}
+OF_MEASURES = {"remove-measures"}  # see window_test.py
 
 
 def list_actions():
@@ -56,7 +57,7 @@ class Actions(WindowCase):
         self.log = self.folder / "actions.csv"
         self.log.unlink(missing_ok=True)
         self.program = subprocess.Popen(
-            [PROGRAM, "run", self.folder / "dipeptide", "--files", self.folder, "--size", "640x420",
+            [PROGRAM, "run", self.folder / "dipeptide", "--files", self.folder, "--size", "640x520",
              "--actions", self.log, *map(str, options)],
             env={**os.environ, "DISPLAY": display.name}, stdout=subprocess.DEVNULL,
             stderr=subprocess.PIPE, text=True)
@@ -138,10 +139,10 @@ class Actions(WindowCase):
     def test_each_action_by_menu_key_and_search(self):
         self.actions = list_actions()
         self.assertGreater(len(self.actions), 50)
-        with Display("640x420") as display:
+        with Display("640x520") as display:
             self.start(display)
             for action in self.actions:
-                if action[0] in ENDS | OF_TRAJECTORIES:
+                if action[0] in ENDS | OF_TRAJECTORIES | OF_MEASURES:
                     continue
                 for way in self.ways(action):
                     with self.subTest(action=action[0], by=way):
@@ -161,7 +162,7 @@ class Actions(WindowCase):
         self.actions = list_actions()
         subprocess.run([PROGRAM, "run", ROOT / "scenes" / "dipeptide", "--headless", "--seconds", "0.5",
                         "--record", self.folder / "run"], check=True, stdout=subprocess.DEVNULL)
-        with Display("640x420") as display:
+        with Display("640x520") as display:
             self.start(display, "--trajectory", self.folder / "run" / "trajectory.dcd")
             for action in self.actions:
                 for way in self.ways(action) if action[0] in OF_TRAJECTORIES else []:
@@ -173,7 +174,7 @@ class Actions(WindowCase):
         self.actions = list_actions()
         for action in self.actions:
             for way in self.ways(action) if action[0] in ENDS else []:
-                with self.subTest(action=action[0], by=way), Display("640x420") as display:
+                with self.subTest(action=action[0], by=way), Display("640x520") as display:
                     self.start(display)
                     self.check(action, way)
                     if action[0] == "open":  # the start screen

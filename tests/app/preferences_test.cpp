@@ -16,6 +16,8 @@ TEST_CASE("preferences read as they were written", "[tools][preferences]") {
     const Preferences odd{.device = "a \"b\"\n",
                           .sound = GENERATE(true, false),
                           .recent = {"/a 'b'", "c"},
+                          .folder = "/home/me",
+                          .lessons_done = {"water", "/home/me/lesson.toml"},
                           .hand_explained = true,
                           .window_size = std::array{1280, 800},
                           .dark_theme = true,
@@ -48,13 +50,14 @@ TEST_CASE("preferences that are wrong say where", "[tools][preferences]") {
     CHECK_THAT(told("window_size = [1280]"), Contains("window_size is not two whole numbers"));
     CHECK_THAT(told("window_size = [100, 800]"), Contains("p.toml:1:15: window_size is not"));
     CHECK_THAT(told("panels = [1]"), Contains("panels is not a list of texts"));
+    CHECK_THAT(told("lessons_done = true"), Contains("lessons_done is not a list of texts"));
     CHECK_THAT(told("download_from = 1"), Contains("p.toml:1:17: download_from is not text"));
     CHECK_THAT(told("download_stall_seconds = 0"), Contains("is not a number from 1 to 3600"));
     CHECK_THAT(told("dark_theme = 1"), Contains("dark_theme is not true or false"));
     CHECK_THAT(told("devise = \"omni\""),
                Contains("p.toml:1:10: unknown key 'devise'") &&
                    Contains("device, sound, scene, recent, hand_explained, text_scale, language, "
-                            "window_size, dark_theme, panels, download_from, "
+                            "window_size, dark_theme, folder, lessons_done, panels, download_from, "
                             "download_stall_seconds") &&
                    Contains("did you mean 'device'"));
 }
@@ -101,12 +104,12 @@ TEST_CASE("the file is where the system keeps settings", "[tools][preferences]")
     setenv("HOME", "/home/somebody", 1);
     CHECK(find_preferences_file() == "/home/somebody/.config/palpa/preferences.toml");
     setenv("XDG_CACHE_HOME", "/some/cache", 1);
-    CHECK(find_structure_cache() == "/some/cache/palpa/structures");
+    CHECK(find_cache_folder("structures") == "/some/cache/palpa/structures");
     unsetenv("XDG_CACHE_HOME");
     unsetenv("LOCALAPPDATA");
-    CHECK(find_structure_cache() == "/home/somebody/.cache/palpa/structures");
+    CHECK(find_cache_folder("structures") == "/home/somebody/.cache/palpa/structures");
     unsetenv("XDG_CONFIG_HOME");
     unsetenv("HOME");
     CHECK_FALSE(find_preferences_file());
-    CHECK_FALSE(find_structure_cache());
+    CHECK_FALSE(find_cache_folder("structures"));
 }

@@ -248,9 +248,9 @@ class StartScreen(WindowCase):
         with Display() as display:
             self.start(display, self.folder / "broken.toml")
             self.wait_for(display, "Palpa")
-            (width, _), pixels = read_png(self.screenshot(display))
+            (width, height), pixels = read_png(self.screenshot(display))
             reds = sum(pixels[i] > 150 and pixels[i + 1] < 60
-                       for i in range(0, 4 * width * 120, 4))
+                       for i in range(4 * width * (height - 80), 4 * width * height, 4))
             self.assertGreater(reds, 50)
             self.end(display)
 

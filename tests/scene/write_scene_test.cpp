@@ -164,12 +164,13 @@ TEST_CASE("what a step of a lesson asks, shows and does is written and read agai
           "[scene][write]") {
     SceneDescription scene = water();
     scene.lesson_goal = "know";
+    scene.lesson_learned = "I know.";
     scene.minutes = 1.0 / 3 + 1;
     scene.level = SceneLevel::Student;
     scene.lesson = {{"one", "text", "task", LessonQuantity::HydrogenBonds, 1.0, {}, 0},
                     {"two", "text", "task", LessonQuantity::Distance, {}, {}, 0}};
     scene.lesson[0].of = {"name \"OH2\"", "molecule moved"};
-    scene.lesson[0].plot = LessonPlot::Force;
+    scene.lesson[0].plot = LessonPlot::Way;
     scene.lesson[0].panel = LessonPanel::Plots;
     scene.lesson[0].operator_take = "moved:1";
     scene.lesson[0].operator_coupling = {"mode=4", "A_f=1000000000"};
@@ -180,12 +181,13 @@ TEST_CASE("what a step of a lesson asks, shows and does is written and read agai
 
     CHECK(formatted(back) == formatted(scene));
     CHECK(back.lesson_goal == "know");
+    CHECK(back.lesson_learned == "I know.");
     CHECK(back.minutes == scene.minutes);
     CHECK(back.level == scene.level);
     REQUIRE(back.lesson.size() == 2);
     CHECK(back.lesson[0].quantity == LessonQuantity::HydrogenBonds);
     CHECK(back.lesson[0].of == scene.lesson[0].of);
-    CHECK(back.lesson[0].plot == LessonPlot::Force);
+    CHECK(back.lesson[0].plot == LessonPlot::Way);
     CHECK(back.lesson[0].panel == LessonPanel::Plots);
     CHECK(back.lesson[0].operator_take == "moved:1");
     CHECK(back.lesson[0].operator_coupling.size() == 2);

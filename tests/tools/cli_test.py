@@ -355,7 +355,7 @@ class Cli(unittest.TestCase):
         scene = self.copy_of_water()
         file = scene / "scene.toml"
         file.write_text(file.read_text().replace("peak_nN", "peak_Nn"))
-        self.assert_bad_input(self.palpa("run", "--check", scene), "scene.toml:32:1: ",
+        self.assert_bad_input(self.palpa("run", "--check", scene), "scene.toml:33:1: ",
                               "unknown key 'hand.peak_Nn'; did you mean 'peak_nN'?")
 
     def test_a_parameter_file_without_the_type(self):

@@ -3,6 +3,7 @@
 #include "app/recovery.h"
 #include "app/replay_session.h"
 #include "app/run_window.h"
+#include "app/scene_cards.h"
 #include "app/window_devices.h"
 #include "core/files.h"
 #include "core/interrupt.h"
@@ -25,33 +26,71 @@
 #include "view/first_view.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 namespace palpa {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Keeps a choice of the window. Throws LoadError.
-template <auto Field>
-auto remember(PreferencesFile& preferences) {
-    return [&preferences](const auto& value) {
-        Preferences chosen = preferences.now();
-        chosen.*Field = value;
-        preferences.keep(chosen);
-    };
-}
-
 // Asked for, or else chosen last.
 SoundChoice build_sound_choice(const RunOptions& options, PreferencesFile& preferences) {
     return {.is_on = options.sound || preferences.now().sound.value_or(false),
             .remember = remember<&Preferences::sound>(preferences)};
+}
+
+std::vector<SceneEntry> list_own_lessons() {
+    std::vector<SceneEntry> lessons;
+    for (const fs::path& folder : own_scene_folders())
+        std::ranges::copy_if(list_scenes(folder), std::back_inserter(lessons),
+                             &SceneEntry::has_lesson);
+    return order_scenes(std::move(lessons));
+}
+
+// Nothing for a scene that came with a picture.
+std::function<void(const Picture&)> build_picture_keeper(const fs::path& scene) {
+    const fs::path file = find_card_picture(scene);
+    if (file.empty() || file.parent_path() == scene.parent_path()) return {};
+    return [file](const Picture& picture) {
+        make_folder(file.parent_path());
+        write_png(file, picture, Existing::Replace);
+    };
+}
+
+// Takes up a lesson as done, and offers the first one after it that is not.
+LessonChoice build_lesson_choice(const fs::path& scene, PreferencesFile& preferences) {
+    std::vector<SceneEntry> lessons = list_own_lessons();
+    std::error_code error;
+    const auto present = std::ranges::find_if(
+        lessons, [&](const SceneEntry& entry) { return fs::equivalent(entry.file, scene, error); });
+    const std::string name = present == lessons.end()
+                                 ? fs::absolute(scene, error).lexically_normal().string()
+                                 : present->name;
+    if (present != lessons.end()) std::rotate(lessons.begin(), present, lessons.end());
+    LessonChoice choice{.remember_done = [name, &preferences](bool /*is_done*/) {
+        Preferences chosen = preferences.now();
+        if (std::ranges::count(chosen.lessons_done, name) > 0) return;
+        chosen.lessons_done.push_back(name);
+        preferences.keep(chosen);
+    }};
+    for (const SceneEntry& other : lessons) {
+        if (other.name == name || std::ranges::count(preferences.now().lessons_done, other.name))
+            continue;
+        choice.next = {other.title, other.file};
+        break;
+    }
+    return choice;
 }
 
 // Remembers the scene as opened; a failure keeps nobody from working.
@@ -234,18 +273,23 @@ std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
          .pads = &devices.pads(),
          .devices = options.play ? DeviceMenu() : devices.menu(),
          .sound = build_sound_choice(options, preferences),
+         .lesson =
+             scene.lesson.empty() ? LessonChoice() : build_lesson_choice(scene.file, preferences),
          .is_hand_explained = preferences.now().hand_explained,
          .remember_hand_explained = remember<&Preferences::hand_explained>(preferences),
          .panels = preferences.now().panels,
          .remember_panels = remember<&Preferences::panels>(preferences),
          .save = save,
+         .keep_picture = build_picture_keeper(scene.file),
          .save_for_crash = [&](const World& now,
                                const ViewDescription& view) { recovery.save(now, view); },
          .notice = news,
          .server = server.get(),
          .lose_device_at = options.lose_device_at,
          .note_action = note_action});
-    if (report.frames == 0 && report.next) return report.next;  // it was not loaded
+    std::optional<NextScreen> next = report.next;
+    if (next) next->left = scene.file;
+    if (report.frames == 0 && next) return next;  // it was not loaded
     if (noted_interrupt() == 0) recovery.forget();
     const SceneDescription played = find_played(scene, report, options.play);
     if (options.json) {
@@ -253,7 +297,7 @@ std::optional<NextScreen> show_scene(std::optional<WindowShell>& shell,
     } else {
         print_report(played, report);
     }
-    return report.next;
+    return next;
 }
 
 std::optional<NextScreen> show_recording(WindowShell& shell, PreferencesFile& preferences,

@@ -13,7 +13,17 @@
 
 namespace palpa {
 
-// What can be said of the options before anything is loaded. Throws LoadError.
+// Keeps a choice of the window. Throws LoadError.
+template <auto Field>
+auto remember(PreferencesFile& preferences) {
+    return [&preferences](const auto& value) {
+        Preferences chosen = preferences.now();
+        chosen.*Field = value;
+        preferences.keep(chosen);
+    };
+}
+
+// Checks what can be said of the options before anything is loaded. Throws LoadError.
 void check_window_options(const RunOptions& options);
 
 // Sets the folder for what the window saves. Throws LoadError if one is given that is not there.

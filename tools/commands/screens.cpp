@@ -20,6 +20,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <span>
 #include <string>
 #include <system_error>
 
@@ -59,27 +60,57 @@ std::string choose_device(const std::string& name, PreferencesFile& preferences)
     return {};
 }
 
-StartOptions build_start(PreferencesFile& preferences, const RunOptions& options,
-                         std::string problem) {
-    const DeviceRequest request;
-    StartOptions start{
-        .devices = list_device_offers(request),
-        .device = options.device.value_or(preferences.now().device.value_or(first_device)),
-        .choose_device =
-            [&preferences](const std::string& name) { return choose_device(name, preferences); },
-        .problem = std::move(problem)};
-    for (const fs::path& folder : own_scene_folders())
-        std::ranges::move(list_scenes(folder), std::back_inserter(start.scenes));
-    start.recovered = list_recovered();
-    for (const std::string& file : preferences.now().recent) {
-        std::error_code error;
-        if (fs::exists(file, error)) start.recent.emplace_back(file);
-    }
-    return start;
-}
-
 fs::path prepared_folder(const RunOptions& options) {
     return find_prepared_folder().value_or(options.files_folder);
+}
+
+bool is_below(const fs::path& file, const fs::path& folder) {
+    const fs::path relative = file.lexically_relative(folder);
+    return !relative.empty() && *relative.begin() != "..";
+}
+
+// The person's scenes: those opened last, then what was prepared.
+std::vector<SceneEntry> list_yours(std::span<const SceneEntry> recent, const fs::path& prepared) {
+    std::vector<SceneEntry> yours;
+    const std::vector<fs::path> own = own_scene_folders();
+    const auto add = [&](const SceneEntry& entry) {
+        const bool is_own = std::ranges::any_of(
+            own, [&](const fs::path& folder) { return is_below(entry.file, folder); });
+        const bool is_known = std::ranges::count(yours, entry.file, &SceneEntry::file) > 0;
+        if (entry.file.extension() == ".toml" && !is_own && !is_known) yours.push_back(entry);
+    };
+    for (const SceneEntry& entry : recent) add(entry);
+    for (const SceneEntry& entry : list_scenes(prepared)) add(describe_file(entry.file));
+    return yours;
+}
+
+// `before`: the scene that was left; empty: there was none.
+StartOptions build_start(PreferencesFile& preferences, const RunOptions& options,
+                         std::string problem, const fs::path& before) {
+    const DeviceRequest request;
+    const Preferences& now = preferences.now();
+    StartOptions start{
+        .devices = list_device_offers(request),
+        .device = options.device.value_or(now.device.value_or(first_device)),
+        .choose_device =
+            [&preferences](const std::string& name) { return choose_device(name, preferences); },
+        .folder = now.folder.value_or(""),
+        .remember_folder = remember<&Preferences::folder>(preferences),
+        .problem = std::move(problem),
+        .sound = {.is_on = now.sound.value_or(false),
+                  .remember = remember<&Preferences::sound>(preferences)},
+        .asks_for_sound = !now.sound && preferences.can_keep()};
+    if (!before.empty()) start.before = describe_file(before);
+    for (const fs::path& folder : own_scene_folders())
+        std::ranges::move(list_scenes(folder), std::back_inserter(start.cards.scenes));
+    start.recovered = list_recovered();
+    for (const std::string& file : now.recent) {
+        std::error_code error;
+        if (fs::exists(file, error)) start.recent.push_back(describe_file(file));
+    }
+    start.cards.yours = list_yours(start.recent, prepared_folder(options));
+    start.cards.lessons_done = now.lessons_done;
+    return start;
 }
 
 // Nothing where the person changed their mind.
@@ -144,13 +175,14 @@ std::optional<NextScreen> show_named(std::optional<WindowShell>& shell,
 void follow_screens(std::optional<WindowShell>& shell, PreferencesFile& preferences,
                     const RunOptions& options, std::optional<NextScreen> next) {
     RunOptions later = options_of_later(options);
-    const std::optional<std::string> before = preferences.now().device;
+    const std::optional<std::string> device = preferences.now().device;
     std::string problem;
     while (next) {
         // What a person chose in the window counts more than the command line.
-        if (preferences.now().device != before) later.device.reset();
+        if (preferences.now().device != device) later.device.reset();
         if (next->is_start()) {
-            next = show_start_screen(*shell, build_start(preferences, later, std::move(problem)));
+            next = show_start_screen(
+                *shell, build_start(preferences, later, std::move(problem), next->left));
             problem.clear();
             continue;
         }

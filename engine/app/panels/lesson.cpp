@@ -1,4 +1,4 @@
-// The panel "Lesson": the present step, its question and its plot.
+// The panel "Lesson": the present step at the left, its question or its plot at the right.
 #include "app/lesson_course.h"
 #include "app/panels.h"
 #include "app/window_world.h"
@@ -16,72 +16,140 @@
 namespace palpa {
 namespace {
 
-// Buttons at the right end of the first line, where they are always seen.
-void draw_buttons(World& app) {
-    Lesson& lesson = app.write<LessonState>().lesson;
-    const char* const restarts = for_translation("from the start");
-    const bool is_last = lesson.current() + 1 == lesson.steps().size();
-    const char* const goes_on = !lesson.can_go_on() ? for_translation("skip")
-                                : is_last           ? for_translation("Finish (Enter)")
-                                                    : for_translation("Next (Enter)");
-    const ImGuiStyle& style = ImGui::GetStyle();
-    float width = ImGui::CalcTextSize(translated(restarts)).x + 2 * style.FramePadding.x;
-    if (!lesson.is_done())
-        width += ImGui::CalcTextSize(translated(goes_on)).x + 2 * style.FramePadding.x +
-                 style.ItemSpacing.x;
-    ImGui::SameLine(std::max(0.0F, ImGui::GetWindowContentRegionMax().x - width));
-    if (!lesson.is_done()) {
-        const bool can_go_on = lesson.can_go_on();
-        if (can_go_on)
-            ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
-        const bool is_pressed = ImGui::SmallButton(labelled(goes_on).c_str());
-        if (can_go_on) ImGui::PopStyleColor();
-        if (is_pressed && can_go_on) lesson.go_on();
-        if (is_pressed && !can_go_on) lesson.skip();
-        ImGui::SameLine();
-    }
-    if (ImGui::SmallButton(labelled(restarts).c_str())) request(app, restart_lesson);
+constexpr float text_share = 0.46F;  // of the width, where something is drawn beside the text
+
+void draw_action(World& app, const char* id, const char* text, bool is_next) {
+    if (is_next)
+        ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
+    if (ImGui::SmallButton(labelled(text).c_str())) request(app, action_called(id));
+    if (is_next) ImGui::PopStyleColor();
 }
 
-void draw_step(World& app) {
-    LessonState& state = app.write<LessonState>();
-    Lesson& lesson = state.lesson;
+// Buttons at the right end of the first line, where they stay while the step changes.
+void draw_buttons(World& app) {
+    const Lesson& lesson = app.resource<LessonState>().lesson;
+    const bool is_last = lesson.current() + 1 == lesson.steps().size();
+    const bool can_go_on = lesson.can_go_on();
+    const char* const goes_on = !can_go_on ? for_translation("Skip")
+                                : is_last  ? for_translation("Finish (Enter)")
+                                           : for_translation("Next (Enter)");
+    const char* const restarts = for_translation("From the start");
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const auto width_of = [&](const char* text) {
+        return ImGui::CalcTextSize(translated(text)).x + 2 * style.FramePadding.x;
+    };
+    const float width = width_of(goes_on) + width_of(restarts) + style.ItemSpacing.x;
+    ImGui::SameLine(std::max(0.0F, ImGui::GetWindowContentRegionMax().x - width));
+    draw_action(app, "restart-lesson", restarts, false);
+    ImGui::SameLine();
+    draw_action(app, can_go_on ? "next-step" : "skip-step", goes_on, can_go_on);
+}
+
+// How near the person is to the goal, as a bar; filled again by the time for which it must be kept.
+void draw_goal(const Lesson& lesson) {
+    const std::optional<double> value = lesson.value();
+    if (!value) return;
+    const LessonStepDescription& step = lesson.steps()[lesson.current()];
+    const LessonGoal goal = describe_goal(step, *value, lesson.start().value_or(*value));
+    ImGui::TextWrapped("%s   %s", goal.now.c_str(), goal.goal.c_str());
+    const bool is_kept = goal.share >= 1 && step.for_s > 0;
+    const double share = lesson.is_step_done() ? 1 : is_kept ? lesson.share() : goal.share;
+    ImGui::PushStyleColor(ImGuiCol_PlotHistogram,
+                          lesson.is_step_done() || is_kept ? colours().done : colours().task);
+    ImGui::ProgressBar(static_cast<float>(share), {-1, scaled(6)}, "");
+    ImGui::PopStyleColor();
+}
+
+void draw_text(const Lesson& lesson) {
     const LessonStepDescription& step = lesson.steps()[lesson.current()];
     ImGui::TextWrapped("%s", step.text.c_str());
     ImGui::PushStyleColor(ImGuiCol_Text, lesson.is_step_done() ? colours().done : colours().task);
     ImGui::TextWrapped("%s%s", lesson.is_step_done() ? translated("Done: ") : "",
                        step.task.c_str());
     ImGui::PopStyleColor();
+    draw_goal(lesson);
+}
+
+void draw_beside(World& app) {
+    LessonState& state = app.write<LessonState>();
+    const LessonStepDescription& step = state.lesson.steps()[state.lesson.current()];
     if (step.question) {
-        const auto pressed = draw_lesson_question(*step.question, lesson.chosen());
-        if (pressed) lesson.answer(*pressed);
+        const auto pressed = draw_lesson_question(*step.question, state.lesson.chosen());
+        if (pressed) state.lesson.answer(*pressed);
+    } else if (step.plot == LessonPlot::Map) {
+        draw_lesson_map(frame_of(app).readout.lesson);
+    } else {
+        state.curve.draw(step.plot, std::max(scaled(80), ImGui::GetContentRegionAvail().y));
     }
-    if (step.plot == LessonPlot::Map) draw_lesson_map(frame_of(app).readout.lesson);
-    if (step.plot == LessonPlot::Force) state.curve.draw();
-    if (step.for_s > 0) ImGui::ProgressBar(static_cast<float>(lesson.share()), {-1, scaled(6)}, "");
+}
+
+// Each in a window of its own, so that every step begins above.
+void draw_step(World& app) {
+    const Lesson& lesson = app.resource<LessonState>().lesson;
+    const LessonStepDescription& step = lesson.steps()[lesson.current()];
+    const bool has_two = step.question || step.plot != LessonPlot::None;
+    const float width = has_two ? text_share * ImGui::GetContentRegionAvail().x : 0;
+    ImGui::BeginChild(fmt::format("text {}", lesson.current()).c_str(), {width, 0});
+    draw_text(lesson);
+    ImGui::EndChild();
+    if (!has_two) return;
+    ImGui::SameLine();
+    ImGui::BeginChild(fmt::format("beside {}", lesson.current()).c_str());
+    draw_beside(app);
+    ImGui::EndChild();
+}
+
+// What was learned, and where to go on.
+void draw_end(World& app) {
+    const SceneDescription& scene = scene_of(app);
+    const std::string& learned =
+        scene.lesson_learned.empty() ? scene.lesson_goal : scene.lesson_learned;
+    ImGui::PushStyleColor(ImGuiCol_Text, colours().done);
+    ImGui::TextUnformatted(format_translated("Well done: all {} steps of \"{}\".",
+                                             app.resource<LessonState>().lesson.steps().size(),
+                                             scene.title)
+                               .c_str());
+    ImGui::PopStyleColor();
+    if (!learned.empty()) ImGui::TextWrapped("%s", learned.c_str());
+    ImGui::Spacing();
+    if (const std::optional<NextLesson>& next = options_of(app).lesson.next) {
+        const std::string text = format_translated("Next lesson: {} (Enter)", next->title);
+        if (ImGui::Button(text.c_str())) request(app, action_called("next-step"));
+        ImGui::SameLine();
+    }
+    if (ImGui::Button(labelled("All lessons").c_str())) request(app, action_called("open"));
+    ImGui::SameLine();
+    if (ImGui::Button(labelled("From the start").c_str()))
+        request(app, action_called("restart-lesson"));
 }
 
 void draw_lesson(World& app) {
     const Lesson& lesson = app.resource<LessonState>().lesson;
-    const std::size_t count = lesson.steps().size();
-    if (lesson.is_done()) {
-        ImGui::TextUnformatted(
-            format_translated("All {} steps are done. L hides this.", count).c_str());
-        return draw_buttons(app);
-    }
-    const std::size_t at = lesson.current();
-    std::string head = format_translated("step {} of {}", at + 1, count);
-    if (const auto value = lesson.value())
-        head += ": " + describe_value(lesson.steps()[at], *value);
-    ImGui::TextDisabled("%s", head.c_str());
+    if (lesson.is_done()) return draw_end(app);
+    ImGui::TextDisabled(
+        "%s",
+        format_translated("Step {} of {}", lesson.current() + 1, lesson.steps().size()).c_str());
     draw_buttons(app);
-    ImGui::BeginChild(fmt::format("step {}", at).c_str());  // its own, so that it begins above
-    if (!lesson.is_done()) draw_step(app);
-    ImGui::EndChild();
+    draw_step(app);
 }
 
 bool is_lesson_there(const World& app) {
     return !app.resource<LessonState>().lesson.steps().empty();
+}
+
+// Letters of answers, while there is a question, do nothing else.
+bool press_in_lesson(World& app, const KeyPress& press) {
+    Lesson& lesson = app.write<LessonState>().lesson;
+    const auto& front = app.resource<Docks>().front;
+    const auto seen = front.find(Side::Bottom);
+    if (seen == front.end() || seen->second != "lesson") return false;
+    if (lesson.is_done() || press.control || types_text()) return false;
+    const auto& question = lesson.steps()[lesson.current()].question;
+    if (!question || press.key < Key::A) return false;
+    const auto answer = static_cast<std::size_t>(press.key) - static_cast<std::size_t>(Key::A);
+    if (answer >= question->answers.size()) return false;
+    lesson.answer(answer);
+    return true;
 }
 
 }  // namespace
@@ -92,6 +160,7 @@ extern const Panel lesson_panel{.id = "lesson",
                                 .icon = icon_lesson,
                                 .side = Side::Bottom,
                                 .draw = draw_lesson,
-                                .is_there = is_lesson_there};
+                                .is_there = is_lesson_there,
+                                .press = press_in_lesson};
 
 }  // namespace palpa

@@ -172,7 +172,8 @@ void draw_additions(World& app) {
     ViewAdditions changed = app.resource<ViewAdditions>();
     if (changed == ViewAdditions()) return;
     if (!begin_group(for_translation("In the picture"),
-                     changed.layers.size() + changed.hidden.size() + changed.labels.size()))
+                     changed.layers.size() + changed.hidden.size() + changed.labels.size() +
+                         changed.measures.size()))
         return;
     const auto list = [&](auto& items, const auto& describe) {
         for (std::size_t i = 0; i < items.size(); ++i) {
@@ -195,6 +196,8 @@ void draw_additions(World& app) {
          [](const std::string& text) { return format_translated("hidden: {}", text); });
     list(changed.labels,
          [](const std::string& text) { return format_translated("label: {}", text); });
+    list(changed.measures,
+         [](const std::string& text) { return format_translated("measure: {}", text); });
     set_additions(app, std::move(changed));
 }
 

@@ -1,0 +1,161 @@
+// The lesson beside the picture: answers by letters and clicks, and what each step names is seen.
+#include "app/actions.h"
+#include "app/camera.h"
+#include "app/lesson_course.h"
+#include "app/scene_cards.h"
+#include "molecule/select.h"
+#include "render/renderer.h"
+#include "scene/find_scene.h"
+#include "scene/read_scene.h"
+#include "simulation/select_in_world.h"
+#include "tests/support/window_screen.h"
+#include "view/build_frame.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+using namespace palpa;
+using test::WindowScreen;
+
+namespace {
+
+Lesson& lesson_of(WindowScreen& screen) { return screen.app.write<LessonState>().lesson; }
+
+void go_to_question(WindowScreen& screen) {
+    Lesson& lesson = lesson_of(screen);
+    while (!lesson.steps()[lesson.current()].question) lesson.skip();
+    screen.frames(3);
+}
+
+// Presses a key as the window does: panels first, then actions.
+void press(WindowScreen& screen, Key key) {
+    const KeyPress press{key};
+    if (press_in_panels(screen.app, press)) return;
+    if (const Action* const action = find_action(press)) perform(screen.app, *action);
+}
+
+// Atoms that a step speaks of: of its quantity, or else what is in hand.
+std::vector<std::uint32_t> find_named(const WindowScreen& screen,
+                                      const LessonStepDescription& step) {
+    std::vector<std::uint32_t> atoms;
+    for (const std::string& text : step.of) {
+        const std::vector<bool> chosen =
+            select_in_world(screen.session.world, parse_selection(text, "of"));
+        for (std::size_t i = 0; i < chosen.size(); ++i)
+            if (chosen[i]) atoms.push_back(static_cast<std::uint32_t>(i));
+    }
+    if (!atoms.empty()) return atoms;
+    const AtomRange held = led_hand(screen.app).held;
+    for (std::uint32_t i = 0; i < held.count; ++i) atoms.push_back(held.first + i);
+    return atoms;
+}
+
+std::vector<SceneEntry> list_lessons() {
+    std::vector<SceneEntry> lessons;
+    std::ranges::copy_if(list_scenes(test::in_project("scenes")), std::back_inserter(lessons),
+                         &SceneEntry::has_lesson);
+    return lessons;
+}
+
+}  // namespace
+
+TEST_CASE("answers take their letters, and nothing else does", "[app][lesson]") {
+    WindowScreen screen;
+    screen.frames(3);
+    press(screen, Key::C);  // no question yet: the next colours
+    CHECK(screen.app.resource<PictureState>().view.colouring != screen.options.view.colouring);
+    go_to_question(screen);
+    Lesson& lesson = lesson_of(screen);
+    const Colouring colours = screen.app.resource<PictureState>().view.colouring;
+    press(screen, Key::C);
+    CHECK(lesson.chosen() == 2);
+    CHECK_FALSE(lesson.is_step_done());
+    press(screen, Key::A);
+    CHECK(lesson.chosen() == 0);
+    press(screen, Key::B);  // the right one
+    CHECK(lesson.is_step_done());
+    press(screen, Key::C);
+    CHECK(lesson.chosen() == 1);
+    CHECK(screen.app.resource<PictureState>().view.colouring == colours);
+    press(screen, Key::V);  // no answer has it
+    CHECK(screen.app.resource<PictureState>().view.representation !=
+          screen.options.view.representation);
+}
+
+TEST_CASE("what is said of an answer moves no answer under the mouse", "[app][lesson]") {
+    WindowScreen screen;
+    ImGui::GetIO().DisplaySize = {1280, 800};
+    screen.frames(3);
+    go_to_question(screen);
+    Lesson& lesson = lesson_of(screen);
+    const ScreenArea picture = screen.picture();
+    // Down the right half of the panel: the places of the answers.
+    const float x = picture.left + 0.75F * picture.width();
+    const auto answer_at = [&](float y) {
+        lesson.restart();
+        go_to_question(screen);
+        screen.click({x, y});
+        return lesson.chosen();
+    };
+    std::vector<std::optional<std::size_t>> first, after;
+    for (float y = picture.bottom + 30; y < 790; y += 12) {
+        first.push_back(answer_at(y));
+        if (!first.back()) continue;
+        lesson.restart();
+        go_to_question(screen);
+        lesson.answer(0);  // a wrong one, which is explained
+        screen.frames(3);
+        screen.click({x, y});
+        CHECK(lesson.chosen() == first.back());
+    }
+    for (const std::size_t answer : {0U, 1U, 2U})
+        CHECK(std::ranges::count(first, std::optional<std::size_t>(answer)) > 0);
+}
+
+TEST_CASE("what a step of a lesson names is in the picture, and no panel covers it",
+          "[app][lesson]") {
+    const std::vector<SceneEntry> lessons = list_lessons();
+    REQUIRE(lessons.size() == 8);
+    for (const SceneEntry& entry : lessons) {
+        WindowScreen screen(read_scene(entry.file));
+        for (const ImVec2 size : {ImVec2(1280, 800), ImVec2(1366, 768)}) {
+            ImGui::GetIO().DisplaySize = size;
+            screen.app.write<SavedViewState>().lesson_step.reset();
+            lesson_of(screen).restart();
+            screen.frames(3);
+            PictureState& picture = screen.app.write<PictureState>();
+            NewestFrame& newest = screen.app.write<NewestFrame>();
+            newest.frame.picture = build_frame(screen.session.world, screen.options.view);
+            for (const Vec3& place : screen.session.world.resource<AtomTable>().positions)
+                newest.frame.places.push_back(as_float(place));
+            picture.first = newest.frame.picture;
+            picture.has_first = true;
+            show_first_view(screen.app);
+            for (; !lesson_of(screen).is_done(); lesson_of(screen).skip()) {
+                const LessonStepDescription& step =
+                    lesson_of(screen).steps()[lesson_of(screen).current()];
+                INFO(entry.name << ", step " << step.name << ", " << size.x << " x " << size.y);
+                follow_lesson(screen.app);
+                screen.frames(2);
+                CameraState& state = screen.app.write<CameraState>();
+                if (state.flight) state.now = state.flight->to;
+                state.flight.reset();
+                FrameCamera camera = frame_camera(state.now, newest.frame.picture);
+                camera.centre = free_centre(screen.app);
+                const ScreenArea area = screen.picture();
+                std::size_t seen = 0;
+                const std::vector<std::uint32_t> atoms = find_named(screen, step);
+                for (const std::uint32_t atom : atoms) {
+                    const glm::vec3 at = project(camera, newest.frame.places[atom],
+                                                 static_cast<std::uint32_t>(size.x),
+                                                 static_cast<std::uint32_t>(size.y));
+                    seen += at.z > camera.near && at.x > area.left && at.x < area.right &&
+                            at.y > area.top && at.y < area.bottom;
+                }
+                CHECK(seen == atoms.size());
+            }
+        }
+    }
+}
