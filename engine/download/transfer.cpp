@@ -198,6 +198,13 @@ void check_answer(const Curl& curl, const Answer& answer, const std::string& add
             fail(fmt::format("cannot be reached ({}); check the network, {}",
                              curl.easy_strerror(answer.result), by_hand));
             break;
+        case CURLE_PEER_FAILED_VERIFICATION:
+        case CURLE_SSL_CACERT_BADFILE:
+            fail(
+                fmt::format("cannot be trusted ({}); check the clock and the system's certificates "
+                            "(Debian: ca-certificates)",
+                            curl.easy_strerror(answer.result)));
+            break;
         default:
             fail(fmt::format("cannot be downloaded ({}); try again later, {}",
                              curl.easy_strerror(answer.result), by_hand));

@@ -211,7 +211,7 @@ class Fetch(unittest.TestCase):
         server = self.serve(**{"1abc": packed(self.entry("1abc"))})
         server.server.socket = context.wrap_socket(server.server.socket, server_side=True)
         self.prefer(server.base.replace("http:", "https:"))
-        self.assert_refused(self.prepare("1abc", no_proxy="127.0.0.1"), "cannot be downloaded (SSL peer certificate")
+        self.assert_refused(self.prepare("1abc", no_proxy="127.0.0.1"), "cannot be trusted (SSL peer certificate")
         self.assertEqual(server.asked, [])
 
     def test_nothing_but_a_persons_word_downloads(self):
