@@ -15,7 +15,7 @@ struct CleanPicture {
     bool has_arrow = true;      // of the force on what is in hand
 };
 
-// What is seen between the panels is all in the picture, which may show more at its sides. Between
+// Draws all that is seen between the panels; the picture may show more at its sides. Between
 // two frames. Throws GpuError for a size that the device cannot draw.
 Picture draw_clean_picture(World& app, const CleanPicture& wanted);
 

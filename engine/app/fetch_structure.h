@@ -12,7 +12,8 @@
 
 namespace palpa {
 
-// What these open, from a command or dropped: of a code or a link that is no file, its PDB entry.
+// Names what these open, from a command or dropped: of a code or a link that is no file, its PDB
+// entry.
 NextScreen name_screen(std::vector<std::filesystem::path> named);
 
 // The server, limits and cache that the preferences name. Throws LoadError if these cannot be read

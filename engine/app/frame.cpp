@@ -45,7 +45,7 @@ void read_frame(World& app) {
     tell_news(app);
 }
 
-// What the start screen will show of the scene.
+// Keeps the picture that the start screen will show of the scene.
 void keep_picture(World& app) {
     const auto& keep = options_of(app).keep_picture;
     if (!keep || !has_frame(app) || !shell_of(app).graphics()) return;

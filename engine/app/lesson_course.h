@@ -13,7 +13,7 @@ void follow_lesson_by_tick(World& app, const ServoTick& tick);
 
 // Steps, what they measured, the world and the coupling's mode are as at the start.
 void restart_lesson(World& app);
-// To the next step if the present one is done; after the last one, to the next lesson.
+// Goes to the next step if the present one is done; after the last one, to the next lesson.
 void go_on_in_lesson(World& app);
 void skip_step(World& app);
 

@@ -23,7 +23,7 @@ constexpr std::size_t most_atoms = 4;
 ViewSettings& view_of(World& app) { return app.write<PictureState>().view; }
 const ViewSettings& view_of(const World& app) { return app.resource<PictureState>().view; }
 
-// As view.measure takes it.
+// The measure in the form of view.measure.
 std::string measure_of(const World& app, const std::vector<std::uint32_t>& atoms) {
     std::string text;
     for (const std::uint32_t atom : atoms)
@@ -31,7 +31,7 @@ std::string measure_of(const World& app, const std::vector<std::uint32_t>& atoms
     return text;
 }
 
-// What comes next, by the number of atoms so far.
+// Says which click comes next, by the number of atoms so far.
 void tell_next(World& app, std::size_t count) {
     constexpr std::array<const char*, most_atoms + 1> next{
         for_translation("measure: click on the first atom; I ends"),

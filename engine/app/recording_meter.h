@@ -1,4 +1,4 @@
-// How large a recording is, how fast it grows, and what is left on its disk.
+// The size of a recording, its rate of growth, and the free space on its disk.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace palpa {
 
-// What is recorded now.
+// A recording under way.
 struct RecordingState {
     double recorded_s = 0;
     std::uint64_t bytes = 0;                    // of all its files

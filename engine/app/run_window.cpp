@@ -48,7 +48,7 @@ void begin(World& app) {
     tell(app, before.empty() ? options.notice : options.notice + "\n" + before, long_notice_s);
 }
 
-// Before the window goes, which says so meanwhile.
+// Ends and compresses a recording before the window goes, which says so meanwhile.
 void close_recording(WindowShell& shell, WindowSession& session) {
     if (!session.recording() && !session.packed_share()) return;
     try {

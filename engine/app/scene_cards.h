@@ -29,7 +29,7 @@ struct SceneCards {
     std::vector<Picture> pictures;  // of one size
 };
 
-// What may become a card: Palpa's own scenes, the person's, and which lessons they have done.
+// Sources of cards: Palpa's own scenes, the person's, and which lessons they have done.
 struct CardSource {
     std::vector<SceneEntry> scenes{};         // those with a level are shown
     std::vector<SceneEntry> yours{};          // all are

@@ -31,7 +31,7 @@ constexpr double frames_per_s = 60;
 constexpr ImU32 chosen_edge = IM_COL32(60, 120, 210, 255), card_edge = IM_COL32(150, 160, 175, 255),
                 mark_colour = IM_COL32(255, 255, 255, 255);
 
-// In the order of CardGroup.
+// Names in the order of CardGroup.
 constexpr std::array<const char*, card_groups> group_names{
     for_translation("Lessons"), for_translation("Explore"), for_translation("Research"),
     for_translation("Yours")};
@@ -218,7 +218,7 @@ void StartScreen::go_back() {
     }
 }
 
-// To the next card in its row, or to the nearest one in the next row.
+// Chooses the next card in its row, or the nearest one in the next row.
 void StartScreen::move(int right, int down) {
     if (seen_.empty() || places_.size() != seen_.size()) return;
     moved_ = true;
@@ -318,7 +318,7 @@ void StartScreen::draw_header() {
     ImGui::Separator();
 }
 
-// In a place of their own, so that nothing moves under the mouse.
+// Draws them in a place of their own, so that nothing moves under the mouse.
 void StartScreen::draw_messages() {
     ImGui::Separator();
     if (!problem_.empty()) {

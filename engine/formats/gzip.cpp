@@ -130,7 +130,7 @@ public:
         stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(piece.data()));
         stream_.avail_in = static_cast<uInt>(piece.size());
     }
-    // What fits of the piece; all of it is there once not all of `into` was needed.
+    // Takes what fits of the piece; all of it is there once not all of `into` was needed.
     std::string_view pack(std::vector<char>& into, bool is_last) noexcept {
         stream_.next_out = reinterpret_cast<Bytef*>(into.data());
         stream_.avail_out = static_cast<uInt>(into.size());

@@ -91,7 +91,7 @@ inline constexpr std::array<std::string_view, 12> lesson_quantity_names{
     "between_angstrom",  "dihedral_deg",       "hydrogen_bonds", "map_cells", "way_angstrom",
     "work_kcal_per_mol", "energy_kcal_per_mol"};
 
-// What is drawn beside a step of a lesson. Map: the cells of two dihedrals that were visited.
+// The drawing beside a step of a lesson. Map: the cells of two dihedrals that were visited.
 // Force: that on the molecule, over the distance. Way: the same over the way of what is in hand.
 enum class LessonPlot { None, Map, Force, Way };
 inline constexpr std::array<std::string_view, 4> lesson_plot_names{"none", "map", "force", "way"};

@@ -44,7 +44,7 @@ std::filesystem::path name_of_structure(const std::filesystem::path& file);
 // Whether it is a topology (.psf), which is opened with its coordinates.
 bool is_topology(const std::filesystem::path& file);
 
-// Of a recorded session of a window: the journal in its folder; compressed it is journal.txt.gz.
+// The journal of a recorded session of a window, in its folder; compressed it is journal.txt.gz.
 inline constexpr std::string_view journal_name = "journal.txt";
 bool is_journal(const std::filesystem::path& file);
 

@@ -72,7 +72,7 @@ class LessonWindow(WindowCase):
                 display.do("key", "Return")
                 return self.title(display) == "Palpa - Two waters"
 
-            # What was asked for is no change that has to be saved: nothing is asked.
+            # Doing what was asked for is no change that has to be saved: nothing is asked.
             self.wait_until(go_on, "the next lesson")
             self.wait_until(display.focus_window, "the window")
             display.do("key", "ctrl+q")

@@ -31,7 +31,7 @@ TEST_CASE("a recording is as large as all its files, and grows at the rate since
     CHECK(later->bytes_per_s == 500'000);
 }
 
-TEST_CASE("what is left on the disk lasts for its size by the rate", "[app][recording]") {
+TEST_CASE("the free space on the disk lasts for its size divided by the rate", "[app][recording]") {
     RecordingState state{.recorded_s = 1, .bytes = 1, .free_bytes = 600'000'000};
     CHECK_FALSE(seconds_left(state));
     state.bytes_per_s = 1e6;

@@ -93,7 +93,7 @@ class Fetch(unittest.TestCase):
         self.assertEqual(server.asked, ["/1abc.cif.gz"])
         self.assertEqual(self.cached(), ["1abc.cif.gz"])
         self.assertEqual((self.cache / "1abc.cif.gz").read_bytes(), data)
-        # As the same file is prepared that somebody has saved.
+        # The same file is prepared that somebody has saved.
         saved = self.tmp / "1abc.cif.gz"
         saved.write_bytes(data)
         result = self.palpa("prepare", saved, "--no-scene", "--no-relax", "-o", self.tmp / "saved")
@@ -188,7 +188,7 @@ class Fetch(unittest.TestCase):
                             "check the network, or save the file with a browser")
 
     def test_only_https_is_asked(self):
-        for base in ("http://example.org/", "ftp://example.org/", "example.org", "file:///tmp/", ""):
+        for base in ("http://example.org/", "ftp://example.org/", "example.org", "file:///folder/", ""):
             with self.subTest(base=base):
                 self.prefer(base)
                 self.assert_refused(self.prepare("1abc"), "expected an address with https://")

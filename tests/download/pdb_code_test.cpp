@@ -47,7 +47,8 @@ TEST_CASE("other links and texts name no entry", "[download][code]") {
           "https://www.rcsb.org/search", "https://www.example.org/structure/1HSG",
           "https://rcsb.org.example.org/structure/1hsg", "https://notrcsb.org/structure/1hsg",
           "https://user@example.org/rcsb.org/1hsg", "ftp://www.rcsb.org/structure/1HSG",
-          "www.rcsb.org/structure/1HSG", "file:///home/1hsg", "1hsg.pdb", "a 1hsg", "/tmp/1hsg"}) {
+          "www.rcsb.org/structure/1HSG", "file:///folder/1hsg", "1hsg.pdb", "a 1hsg",
+          "folder/1hsg"}) {
         INFO(link);
         CHECK_FALSE(find_pdb_code(link));
     }

@@ -37,7 +37,7 @@ std::string packed(const std::string& text) {
     return data;
 }
 
-// By zlib's own reader.
+// Unpacks by zlib's own reader.
 std::string read_by_zlib(const std::filesystem::path& file) {
     std::string text;
     gzFile stream = gzopen(file.string().c_str(), "rb");

@@ -46,7 +46,7 @@ struct RunOptions {
     ServeChoice serve;
 };
 
-// Of the recordings of a run. `can_be_replayed`: the recording's journal has all that moves the
+// Settings of a run's recordings. `can_be_replayed`: the recording's journal has all that moves the
 // atoms, so that a replay makes the trajectory, which is written only on request.
 TrajectorySettings trajectory_settings(const RunOptions& options, bool can_be_replayed = false);
 

@@ -99,7 +99,7 @@ void draw_step(World& app) {
     ImGui::EndChild();
 }
 
-// What was learned, and where to go on.
+// Says what was learned, and where to go on.
 void draw_end(World& app) {
     const SceneDescription& scene = scene_of(app);
     const std::string& learned =
