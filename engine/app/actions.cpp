@@ -108,6 +108,7 @@ void play_trajectory_from_start(World& app) {
 // Goes back one level; quits nothing but a study.
 void go_back(World& app) {
     if (is_study(app)) return ask_to_quit(app);
+    if (measures(app)) return measure_or_end(app);
     if (close_something(app) || end_tour(app) || end_selection(app)) return;
     if (!shows_docks(app)) return toggle_docks(app);
     tell(app, translated("nothing is open; Ctrl+Q quits"));

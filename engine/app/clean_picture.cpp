@@ -2,6 +2,7 @@
 
 #include "app/camera.h"
 #include "app/window_world.h"
+#include "ui/colours.h"
 #include "view/clip.h"
 #include "view/picks.h"
 #include "view/worded_picture.h"
@@ -29,7 +30,7 @@ void leave_out_arrow(FrameScene& scene) {
 
 }  // namespace
 
-Picture draw_clean_picture(World& app, const CleanPicture& wanted) {
+Picture draw_clean_picture(World& app, const CleanPicture& wanted, std::string* problem) {
     const LiveFrame& frame = frame_of(app);
     const CameraState& camera = app.resource<CameraState>();
     WordedFrame worded{frame.picture, {}};
@@ -41,7 +42,9 @@ Picture draw_clean_picture(World& app, const CleanPicture& wanted) {
     scene.camera = frame_camera(camera.now, scene);
     const float aspect = static_cast<float>(wanted.width) / static_cast<float>(wanted.height);
     scene.camera.vertical_angle = fit_angle(scene.camera.vertical_angle, free_room(app), aspect);
-    scene.background = app.resource<PictureState>().sent.background;
+    // White as palpa render draws it, but for a dark theme.
+    scene.background =
+        is_dark_theme() ? app.resource<PictureState>().sent.background : glm::vec3{1};
     scene.clear_background = wanted.is_clear;
     scene.is_fine = true;
     Graphics& graphics = *shell_of(app).graphics();
@@ -49,6 +52,8 @@ Picture draw_clean_picture(World& app, const CleanPicture& wanted) {
     std::vector<std::string> warnings;
     std::optional<TextPainter> painter;
     if (wanted.has_words) painter = open_words(warnings);
+    if (problem && !warnings.empty()) *problem = warnings.front();
+    app.write<PictureState>().drawn_size = {};  // the renderer knows this picture's atoms now
     return draw_worded(graphics.renderer, {wanted.width, wanted.height, wanted.samples}, worded,
                        painter);
 }

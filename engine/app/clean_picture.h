@@ -4,6 +4,7 @@
 #include "render/picture.h"
 
 #include <cstdint>
+#include <string>
 
 namespace palpa {
 
@@ -15,8 +16,12 @@ struct CleanPicture {
     bool has_arrow = true;      // of the force on what is in hand
 };
 
-// Draws all that is seen between the panels; the picture may show more at its sides. Between
-// two frames. Throws GpuError for a size that the device cannot draw.
-Picture draw_clean_picture(World& app, const CleanPicture& wanted);
+// Samples of a picture, in all.
+inline constexpr std::uint64_t most_picture_samples = 128'000'000;
+
+// Draws all that is seen between the panels; the picture may show more at its sides. Call it
+// between two frames. `problem`, if wanted: why words are missing. Throws GpuError for a size that
+// the device cannot draw.
+Picture draw_clean_picture(World& app, const CleanPicture& wanted, std::string* problem = nullptr);
 
 }  // namespace palpa

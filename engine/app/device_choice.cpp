@@ -130,6 +130,7 @@ bool switch_sound(World& app, bool is_on) {
     tone.speaker.reset();
     tone.rumble.reset();
     tone.is_on = is_on;
+    tone.clicks = 0;  // what snapped before is not heard
     if (!is_on) return true;
     tone.rumble = std::make_shared<PadRumble>();
     try {

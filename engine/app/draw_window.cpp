@@ -24,23 +24,6 @@
 namespace palpa {
 namespace {
 
-// Stretches the renderer's picture over an image of the window.
-void blit(VkCommandBuffer commands, VkImage from, VkExtent2D from_size, VkImage to,
-          VkExtent2D to_size) {
-    const auto corner = [](VkExtent2D size) {
-        return VkOffset3D{static_cast<std::int32_t>(size.width),
-                          static_cast<std::int32_t>(size.height), 1};
-    };
-    VkImageBlit region{};
-    region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    region.srcOffsets[1] = corner(from_size);
-    region.dstOffsets[1] = corner(to_size);
-    const bool same = from_size.width == to_size.width && from_size.height == to_size.height;
-    vkCmdBlitImage(commands, from, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to,
-                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region,
-                   same ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
-}
-
 VkExtent2D scaled_size(const World& app) {
     const VkExtent2D size = shell_of(app).graphics()->swapchain.size();
     const double scale = app.resource<PictureState>().scale.value();
@@ -101,7 +84,7 @@ void present(World& app) {
     const bool shows = graphics.swapchain.present(
         [&](VkCommandBuffer buffer, VkImage image) {
             graphics.renderer.record(buffer, picture.shown, size);
-            blit(buffer, graphics.renderer.colour_image(), size, image, graphics.swapchain.size());
+            stretch_over(buffer, graphics.renderer, size, image, graphics.swapchain.size());
         },
         [&](VkCommandBuffer buffer) { graphics.ui.draw(buffer); },
         wants_shot(app) ? &shot : nullptr);

@@ -4,6 +4,7 @@
 #include "app/hands.h"
 #include "app/marks.h"
 #include "app/notices.h"
+#include "app/open_structure.h"
 #include "app/panels.h"
 #include "app/saving.h"
 #include "app/selecting.h"
@@ -102,6 +103,7 @@ std::string describe_atom(const World& app, std::uint32_t atom) {
                     ? format_translated("{} is in hand", address)
                     : fmt::format(fmt::runtime(translated(takes)), address);
     };
+    if (measures(app)) return text + "\n" + translated("click measures it; I or Esc ends");
     add(AtomScope::Molecule, for_translation("click takes {}"));
     add(AtomScope::Residue, for_translation("Shift+click takes {} by a spring"));
     add(AtomScope::Atom, for_translation("Ctrl+click takes {} by a spring"));
@@ -211,7 +213,9 @@ void add_molecule(World& app, AddEdit wanted) {
 
 void take_dropped(World& app, const std::vector<std::filesystem::path>& files) {
     Dialogs& dialogs = app.write<Dialogs>();
-    if (files.empty() || is_study(app) || dialogs.question || !has_frame(app)) return;
+    if (files.empty() || is_study(app) || !has_frame(app)) return;
+    if (dialogs.question)
+        return tell(app, translated("first answer the question, then drop again"));
     const NextScreen next = name_screen(files);
     const auto open = [&app, next] { ask_to_leave(app, next); };
     if (is_replay(app) || !next.code.empty()) return open();
@@ -222,6 +226,13 @@ void take_dropped(World& app, const std::vector<std::filesystem::path>& files) {
     };
     if (std::ranges::any_of(files, is_scene)) return open();
     if (std::ranges::none_of(files, can_be_opened)) return dialogs.add.open(files);
+    if (const std::size_t count = split_structures(files).size(); count > 1) {
+        dialogs.question = {
+            format_translated("Leave this scene, and make a scene of each of {} files?", count),
+            {{Key::O, translated("Make them (O)"), open},
+             {Key::Escape, translated("Nothing (Esc)")}}};
+        return;
+    }
     dialogs.question = {
         format_translated("What should Palpa do with {}?", files[0].filename().string()),
         {{Key::A, translated("Add it to this scene (A)"),

@@ -9,6 +9,7 @@
 #include "app/inspected.h"
 #include "app/lesson_course.h"
 #include "app/marks.h"
+#include "app/measure_scene.h"
 #include "app/notices.h"
 #include "app/panels.h"
 #include "app/recorder.h"
@@ -20,6 +21,7 @@
 #include "app/take_input.h"
 #include "app/window_world.h"
 #include "core/load_error.h"
+#include "core/machine.h"
 #include "core/translate.h"
 #include "session/run_headless.h"
 
@@ -64,6 +66,7 @@ using FrameSystem = void (*)(World& app);
 constexpr FrameSystem frame[] = {
     take_ticks,         // of the servo: statistics, readings, the lesson's step
     read_frame,         // the session's newest picture and readout
+    measure_scene,      // period and gains, where they are not known here
     select_anew,        // after molecules were added or removed
     follow_lesson,      // its restart, the view of a new step
     follow_tour,        // the next saved view
@@ -94,6 +97,7 @@ World build_window_world(const WindowLinks& links, std::vector<WindowHand> hands
     app.set_resource(ForceTone{});
     app.set_resource(CameraState{.clips = scene.view.clip});
     app.set_resource(PictureState{.view = options.view, .sent = options.view});
+    app.set_resource(begin_measure(scene.measured_on, machine_name()));
     app.set_resource(SavedViewState{.all = scene.view.saved});
     app.set_resource(SelectionState{});
     app.set_resource(Measuring{});

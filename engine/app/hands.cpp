@@ -224,7 +224,7 @@ void draw_hand_signs(World& app) {
         HandSign sign{.place = as_float(find_hand_target(app, slot)),
                       .newton = hand.felt_newton,
                       .most_newton = now.settings.coupling.clamp_N,
-                      .molecule_nN = 1e9 * now.contact.force_newton.norm()};
+                      .molecule_nN = hand.molecule_nN};
         if (hand.is_at_stop) {
             sign.reason = translated("handle's end");
         } else if (hand.is_at_wall) {
@@ -232,7 +232,7 @@ void draw_hand_signs(World& app) {
         } else if (hand.waiting_m.norm() > least_waiting_m) {
             sign.reason = translated("molecule waits");
         } else if (hand.is_led() && hand.lead.is_clutched()) {
-            sign.reason = translated("let go");
+            sign.reason = translated("released");
         }
         const bool is_faint = sign.newton < faintest_newton && sign.molecule_nN < faintest_nN;
         if (is_faint && (sign.reason.empty() || hand.lead.is_clutched())) continue;

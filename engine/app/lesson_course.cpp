@@ -72,18 +72,20 @@ void restart_lesson(World& app) {
 }
 
 void go_on_in_lesson(World& app) {
-    if (!is_panel_open(app, "lesson")) return;
-    Lesson& lesson = app.write<LessonState>().lesson;
+    constexpr double reads_s = 1.5;
+    if (!is_panel_seen(app, "lesson")) return;
+    LessonState& state = app.write<LessonState>();
     const std::optional<NextLesson>& next = options_of(app).lesson.next;
-    if (!lesson.is_done())
-        (void)lesson.go_on();
-    else if (next)
+    if (!state.lesson.is_done()) {
+        if (state.lesson.go_on()) state.since = SteadyClock::now();
+    } else if (next && seconds_since(state.since) > reads_s) {  // no key that was pressed twice
         ask_to_leave(app, NextScreen{{next->file}});
+    }
 }
 
 void skip_step(World& app) {
     LessonState& state = app.write<LessonState>();
-    state.was_skipped = true;
+    state.was_skipped = state.was_skipped || !state.lesson.is_step_done();
     state.lesson.skip();
 }
 

@@ -37,8 +37,9 @@ void LiveSession::end_recording() {
     const std::lock_guard lock(recorder_mutex_);
     trajectory_queue_.end();
     record_what_happened();
-    if (recorder_.is_recording()) to_pack_.push_back(recorded_in_);
+    const bool was_recording = recorder_.is_recording();
     recorder_.end(unbinding);
+    if (was_recording) to_pack_.push_back(recorded_in_);
     if (recording_problem_.empty()) return;
     throw LoadError({"recording"}, std::exchange(recording_problem_, {}));
 }
@@ -80,7 +81,7 @@ std::vector<std::string> LiveSession::take_recording_notes() {
 }
 
 void LiveSession::run_recorder() {
-    constexpr std::chrono::milliseconds between{20};
+    constexpr std::chrono::milliseconds between{20}, between_pieces{5};
     for (bool is_last = false; !is_last;) {
         is_last = recorder_stopping_;
         {
@@ -89,7 +90,8 @@ void LiveSession::run_recorder() {
             if (is_last) end_at_last();
         }
         measure_recording();
-        if (!pack_piece() && !is_last) std::this_thread::sleep_for(between);
+        const bool packs = pack_piece();  // a session that goes on needs the cores more
+        if (!is_last) std::this_thread::sleep_for(packs ? between_pieces : between);
     }
     while (pack_piece()) {
     }
@@ -99,8 +101,8 @@ void LiveSession::run_recorder() {
 void LiveSession::end_at_last() {
     if (!recorder_.is_recording()) return;
     try {
-        to_pack_.push_back(recorded_in_);
         recorder_.end(simulation_.unbinding());
+        to_pack_.push_back(recorded_in_);
     } catch (const LoadError& error) {
         recording_problem_ = error.what();
     }

@@ -78,18 +78,21 @@ bool has_measures(const World& app) { return !app.resource<ViewAdditions>().meas
 
 bool shows_contacts(const World& app) { return view_of(app).marks.contacts != ShownBonds::None; }
 void toggle_contacts(World& app) {
-    view_of(app).marks.contacts = shows_contacts(app) ? ShownBonds::None : ShownBonds::InHand;
+    const ShownBonds own = options_of(app).view.marks.contacts;  // the scene's
+    const ShownBonds shown = own == ShownBonds::None ? ShownBonds::InHand : own;
+    view_of(app).marks.contacts = shows_contacts(app) ? ShownBonds::None : shown;
     tell(app, shows_contacts(app)
                   ? translated("contacts, clashes and salt bridges of what is in hand")
                   : translated("contacts hidden"));
 }
 
 bool shows_forces_by_residue(const World& app) {
-    return view_of(app).marks.forces == ShownForces::Residues;
+    return view_of(app).marks.forces != ShownForces::Hand;
 }
 void toggle_forces_by_residue(World& app) {
-    view_of(app).marks.forces =
-        shows_forces_by_residue(app) ? ShownForces::Hand : ShownForces::Residues;
+    const ShownForces own = options_of(app).view.marks.forces;
+    const ShownForces shown = own == ShownForces::Hand ? ShownForces::Residues : own;
+    view_of(app).marks.forces = shows_forces_by_residue(app) ? ShownForces::Hand : shown;
     tell(app, shows_forces_by_residue(app)
                   ? translated("the strongest forces of single residues on what is in hand")
                   : translated("forces of residues hidden"));
@@ -104,11 +107,12 @@ void toggle_ghost(World& app) {
 
 bool shows_trail(const World& app) { return view_of(app).marks.trail_s > 0; }
 void toggle_trail(World& app) {
-    view_of(app).marks.trail_s = shows_trail(app) ? 0 : trail_s;
-    tell(app, shows_trail(app)
-                  ? format_translated(
-                        "trail: the path of the molecule in hand in the last {:.0f} s", trail_s)
-                  : std::string(translated("trail hidden")));
+    const double own = options_of(app).view.marks.trail_s;
+    view_of(app).marks.trail_s = shows_trail(app) ? 0 : own > 0 ? own : trail_s;
+    tell(app, shows_trail(app) ? format_translated(
+                                     "trail: the path of the molecule in hand in the last {:.0f} s",
+                                     view_of(app).marks.trail_s)
+                               : std::string(translated("trail hidden")));
 }
 
 bool shows_shadows(const World& app) { return view_of(app).shadows != Shadows::None; }

@@ -72,7 +72,13 @@ float draw_toolbar(World& app, float top) {
         ImGui::BeginDisabled(!is_possible(app, action));
         const std::string state = action.state ? action.state(app) : std::string();
         const std::string label = state.empty() ? action.icon : action.icon + ("  " + state);
-        const float width = state.empty() ? scaled(28) : 0;  // 0: as wide as it is
+        // The button is as wide whatever it says, so that no icon moves under the mouse.
+        const float width =
+            state.empty()
+                ? scaled(28)
+                : ImGui::CalcTextSize(format_translated("{}, {} left", "888 MB", "888 GB").c_str())
+                          .x +
+                      scaled(36);
         if (icon_button(label.c_str(), std::string(action.id).c_str(), {width, 0}, is_on))
             request(app, action, By::Toolbar);
         ImGui::EndDisabled();

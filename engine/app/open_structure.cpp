@@ -4,14 +4,20 @@
 #include "core/text.h"
 #include "core/translate.h"
 #include "experiments/make_scene.h"
+#include "formats/structure.h"
+#include "prepare/report.h"
+#include "prepare/summary.h"
 #include "scene/find_scene.h"
 #include "ui/file_browser.h"
 #include "ui/layout.h"
+#include "view/preview.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -42,18 +48,24 @@ fs::path find_coordinates(const fs::path& topology) {
                                 topology.stem().string()));
 }
 
+bool is_of_force_field(const fs::path& file) {
+    return has_ending(
+        file, std::array<std::string_view, 6>{".STR", ".RTF", ".PRM", ".TOP", ".PAR", ".INP"});
+}
+
+bool is_of_ligand(const fs::path& file) {
+    return has_ending(file, std::array<std::string_view, 3>{".SDF", ".MOL", ".MOL2"});
+}
+
 SceneRequest build_request(std::span<const fs::path> files) {
-    constexpr std::array<std::string_view, 6> of_force_field{".STR", ".RTF", ".PRM",
-                                                             ".TOP", ".PAR", ".INP"};
-    constexpr std::array<std::string_view, 3> of_ligands{".SDF", ".MOL", ".MOL2"};
     SceneRequest request;
     request.settings.solvent.reset();  // implicit water where it covers everything
     for (const fs::path& file : files) {
         if (is_topology(file)) {
             request.topology = file;
-        } else if (has_ending(file, of_force_field)) {
+        } else if (is_of_force_field(file)) {
             request.force_field.push_back(file);
-        } else if (has_ending(file, of_ligands)) {
+        } else if (is_of_ligand(file)) {
             request.settings.ligand_files.push_back(file);
             request.settings.approximates_ligands = true;
         } else if (request.structure.empty()) {
@@ -73,6 +85,7 @@ SceneRequest build_request(std::span<const fs::path> files) {
                         "needed, its topology (.psf) or a parameter file of its ligands (.str)");
     }
     request.settings.entry = request.structure;
+    request.measures = false;
     return request;
 }
 
@@ -88,20 +101,33 @@ fs::path find_free_folder(const fs::path& below, const fs::path& structure) {
     }
 }
 
-// With an English title.
-void begin_page(const char* title) {
+constexpr float page_share = 0.42F;  // of the window, beside the picture
+
+// Runs until `is_over`, or until the person closes the window.
+void run_page(WindowShell& shell, const std::function<void(Key)>& press,
+              const std::function<void()>& draw, const std::function<bool()>& is_over) {
+    shell.run(
+        page_frames_per_s,
+        [&] {
+            for (const KeyPress& one : shell.poll().pressed) press(one.key);
+            shell.draw_panels(draw);
+            return !shell.window().should_close() && !is_over();
+        },
+        [] {});
+}
+
+// Begins a page with an English title, at the right; `is_long`: down to the edge of the window.
+void begin_page(const char* title, bool is_long) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    const float edge = panel_edge();
-    const ImVec2 size{std::min(scaled(820), screen.x - 2 * edge),
-                      std::min(scaled(700), screen.y - 2 * edge)};
-    ImGui::SetNextWindowPos({0.5F * (screen.x - size.x), 0.5F * (screen.y - size.y)});
-    ImGui::SetNextWindowSize(size);
+    const float edge = panel_edge(), width = page_share * screen.x - edge;
+    ImGui::SetNextWindowPos({screen.x - width - edge, edge});
+    ImGui::SetNextWindowSize({width, is_long ? screen.y - 2 * edge : 0});
     ImGui::Begin(labelled(title).c_str(), nullptr, fixed_panel | ImGuiWindowFlags_NoCollapse);
 }
 
-// Leaves room for a row of buttons below.
+// Leaves room for two rows of buttons below.
 void draw_long_text(const std::string& text) {
-    ImGui::BeginChild("##text", {0, -2 * ImGui::GetFrameHeightWithSpacing()}, true);
+    ImGui::BeginChild("##text", {0, -2.2F * ImGui::GetFrameHeightWithSpacing()}, true);
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(text.c_str(), text.c_str() + text.size());
     ImGui::PopTextWrapPos();
@@ -123,19 +149,14 @@ public:
           folder_(std::move(folder)) {}
 
     Remedy run(std::vector<fs::path>& files) {
-        shell_.run(page_frames_per_s, [this] { return frame(); }, [] {});
+        run_page(
+            shell_, [this](Key key) { take(key); }, [this] { draw(); },
+            [this] { return remedy_.has_value(); });
         files.insert(files.end(), files_.begin(), files_.end());
         return remedy_.value_or(Remedy::None);
     }
 
 private:
-    bool frame() {
-        if (shell_.window().should_close()) return false;
-        for (const KeyPress& press : shell_.poll().pressed) take(press.key);
-        shell_.draw_panels([this] { draw(); });
-        return !remedy_;
-    }
-
     void take(Key key) {
         if (browser_.is_open()) {
             key == Key::Escape ? browser_.close() : browser_.press(key);
@@ -153,7 +174,7 @@ private:
     }
 
     void draw() {
-        begin_page(for_translation("Not in the force field"));
+        begin_page(for_translation("Not in the force field"), true);
         std::string text = problem_.empty() ? std::string() : problem_ + "\n\n";
         for (const UnknownResidue& one : residues_) {
             text += format_translated(
@@ -171,15 +192,18 @@ private:
             "enough to feel the shape, but not to measure.\nParameter file: choose a CHARMM stream "
             "file (.str) that defines the residue. The CGenFF server (cgenff.com) writes one.");
         draw_long_text(text);
+        const auto offer = [&](const char* text, Remedy remedy, bool is_possible = true) {
+            same_line_if_it_fits(translated(text));
+            ImGui::BeginDisabled(!is_possible);
+            const bool is_pressed = ImGui::Button(labelled(text).c_str());
+            if (is_pressed && remedy == Remedy::Files) browse();
+            if (is_pressed && remedy != Remedy::Files) remedy_ = remedy;
+            ImGui::EndDisabled();
+        };
         if (ImGui::Button(labelled("Leave them out (L)").c_str())) remedy_ = Remedy::Omit;
-        ImGui::SameLine();
-        ImGui::BeginDisabled(!may_approximate_);
-        if (ImGui::Button(labelled("Approximate (A)").c_str())) remedy_ = Remedy::Approximate;
-        ImGui::EndDisabled();
-        ImGui::SameLine();
-        if (ImGui::Button(labelled("Parameter file... (P)").c_str())) browse();
-        ImGui::SameLine();
-        if (ImGui::Button(labelled("Cancel (Esc)").c_str())) remedy_ = Remedy::None;
+        offer(for_translation("Approximate (A)"), Remedy::Approximate, may_approximate_);
+        offer(for_translation("Parameter file... (P)"), Remedy::Files);
+        offer(for_translation("Cancel (Esc)"), Remedy::None);
         ImGui::End();
         if (const std::optional<fs::path> file = browser_.draw()) {
             files_.push_back(*file);
@@ -197,31 +221,79 @@ private:
     std::optional<Remedy> remedy_;
 };
 
-// Whether the person goes on to the scene.
-bool show_report(WindowShell& shell, const std::string& text, bool has_scene) {
+// Asks which of the offers to hold. Nothing: the person changed their mind.
+std::optional<std::size_t> ask_for_hand(WindowShell& shell, const Structure& structure,
+                                        const std::vector<HandOffer>& offers) {
+    std::size_t chosen = 0;
     std::optional<bool> goes_on;
+    const auto choose = [&](std::size_t offer) {
+        chosen = std::min(offer, offers.size() - 1);
+        shell.show_behind(build_preview(structure, offers[chosen].atoms), 1 - page_share);
+    };
+    choose(0);
     const auto draw = [&] {
-        begin_page(for_translation("What Palpa decided"));
-        draw_long_text(text);
-        ImGui::BeginDisabled(!has_scene);
+        begin_page(for_translation("What will you hold?"), false);
+        ImGui::TextWrapped("%s",
+                           translated("The picture shows it in green. In the scene a click on "
+                                      "an atom takes something else."));
+        ImGui::Spacing();
+        for (std::size_t i = 0; i < offers.size(); ++i) {
+            const std::string text = i == 0
+                                         ? format_translated("{} (Palpa's choice)", offers[i].words)
+                                         : offers[i].words;
+            ImGui::PushID(static_cast<int>(i));
+            if (ImGui::RadioButton("##offer", i == chosen)) choose(i);
+            ImGui::SameLine();
+            ImGui::TextWrapped("%s", text.c_str());
+            if (ImGui::IsItemClicked()) choose(i);
+            ImGui::PopID();
+        }
+        ImGui::Spacing();
+        if (ImGui::Button(labelled("Go on (Enter)").c_str())) goes_on = true;
+        ImGui::SameLine();
+        if (ImGui::Button(labelled("Back (Esc)").c_str())) goes_on = false;
+        ImGui::End();
+    };
+    const auto press = [&](Key key) {
+        if (key == Key::Enter) goes_on = true;
+        if (key == Key::Escape) goes_on = false;
+        if (key == Key::Down) choose(chosen + 1);
+        if (key == Key::Up && chosen > 0) choose(chosen - 1);
+    };
+    run_page(shell, press, draw, [&] { return goes_on.has_value(); });
+    if (!goes_on.value_or(false)) return std::nullopt;
+    return chosen;
+}
+
+// The result in three lines, and all of it on request.
+struct MadeReport {
+    std::vector<std::string> lines{};
+    std::string details{};
+    bool has_scene = false;
+};
+
+// Whether the person goes on to the scene.
+bool show_report(WindowShell& shell, const MadeReport& report) {
+    std::optional<bool> goes_on;
+    bool shows_details = !report.has_scene;
+    const auto draw = [&] {
+        begin_page(for_translation("What Palpa made"), shows_details);
+        for (const std::string& line : report.lines) ImGui::TextWrapped("%s", line.c_str());
+        ImGui::Checkbox(labelled("Details (D)").c_str(), &shows_details);
+        if (shows_details) draw_long_text(report.details);
+        ImGui::BeginDisabled(!report.has_scene);
         if (ImGui::Button(labelled("Feel it (Enter)").c_str())) goes_on = true;
         ImGui::EndDisabled();
         ImGui::SameLine();
         if (ImGui::Button(labelled("Back (Esc)").c_str())) goes_on = false;
         ImGui::End();
     };
-    shell.run(
-        page_frames_per_s,
-        [&] {
-            if (shell.window().should_close()) return false;
-            for (const KeyPress& press : shell.poll().pressed) {
-                if (press.key == Key::Enter && has_scene) goes_on = true;
-                if (press.key == Key::Escape) goes_on = false;
-            }
-            shell.draw_panels(draw);
-            return !goes_on;
-        },
-        [] {});
+    const auto press = [&](Key key) {
+        if (key == Key::Enter && report.has_scene) goes_on = true;
+        if (key == Key::Escape) goes_on = false;
+        if (key == Key::D) shows_details = !shows_details;
+    };
+    run_page(shell, press, draw, [&] { return goes_on.has_value(); });
     return goes_on.value_or(false);
 }
 
@@ -231,12 +303,22 @@ void apply(Remedy remedy, std::span<const UnknownResidue> residues, PrepareSetti
     for (const UnknownResidue& one : residues) settings.without.push_back(one.name);
 }
 
-// Nothing where it was cancelled. Of parameter files that are wrong the page says so and asks
-// again.
-std::optional<MadeScene> make_with_remedies(WindowShell& shell, SceneRequest request) {
+std::vector<std::uint32_t> find_atoms_of(const Structure& structure,
+                                         std::span<const UnknownResidue> residues) {
+    std::vector<std::uint32_t> atoms;
+    for (std::uint32_t atom = 0; atom < structure.names.size(); ++atom)
+        if (std::ranges::count(residues, structure.names[atom].residue, &UnknownResidue::name) > 0)
+            atoms.push_back(atom);
+    return atoms;
+}
+
+// Returns nothing where it was cancelled. Of parameter files that are wrong the page says so and
+// asks again.
+std::optional<MadeScene> make_with_remedies(WindowShell& shell, const Structure& structure,
+                                            SceneRequest request) {
     const std::string title =
         format_translated("Preparing {}", request.structure.filename().string());
-    std::optional<UnknownResidues> unknown;
+    std::optional<UnknownResidues> unknown, asked;
     std::vector<fs::path> tried;  // files that the person chose last
     for (;;) {
         MadeScene made;
@@ -244,7 +326,7 @@ std::optional<MadeScene> make_with_remedies(WindowShell& shell, SceneRequest req
         std::string problem;
         const bool is_done = shell.work(title, [&](const StageFunction& on_stage) {
             try {
-                made = make_scene(request, on_stage);
+                made = prepare_request(request, on_stage);
             } catch (const UnknownResidues& error) {
                 lacks_something = true;
                 unknown = error;
@@ -255,8 +337,13 @@ std::optional<MadeScene> make_with_remedies(WindowShell& shell, SceneRequest req
         });
         if (!is_done) return std::nullopt;
         if (!lacks_something && problem.empty()) return made;
-        if (!unknown->is_all()) throw LoadError(*unknown);
-        if (!problem.empty()) {
+        if (lacks_something && !unknown->is_all()) {
+            if (!asked) throw LoadError(*unknown);
+            problem = without_options(unknown->what());  // the remedy does not help
+            unknown = asked;
+        }
+        asked = unknown;
+        if (!problem.empty() && !tried.empty()) {
             std::erase_if(request.force_field, [&](const fs::path& file) {
                 return std::ranges::find(tried, file) != tried.end();
             });
@@ -266,44 +353,168 @@ std::optional<MadeScene> make_with_remedies(WindowShell& shell, SceneRequest req
                                   tried.front().filename().string());
         }
         tried.clear();
+        shell.show_behind(build_preview(structure, find_atoms_of(structure, unknown->residues())),
+                          1 - page_share);
         const Remedy remedy =
             UnknownPage(shell, unknown->residues(), !request.settings.approximates_ligands, problem,
                         request.structure.parent_path())
                 .run(tried);
         if (remedy == Remedy::None) return std::nullopt;
+        shell.show_behind(build_preview(structure));
         apply(remedy, unknown->residues(), request.settings);
         request.force_field.insert(request.force_field.end(), tried.begin(), tried.end());
     }
 }
 
+// The picture behind the pages goes with them.
+class PictureOfPages {
+public:
+    explicit PictureOfPages(WindowShell& shell) : shell_(shell) {}
+    PictureOfPages(const PictureOfPages&) = delete;
+    PictureOfPages& operator=(const PictureOfPages&) = delete;
+    ~PictureOfPages() { shell_.show_behind({}); }
+
+private:
+    WindowShell& shell_;
+};
+
+// Returns nothing where it was cancelled.
+std::optional<Structure> read_and_show(WindowShell& shell, const fs::path& file) {
+    Structure structure;
+    const bool is_done =
+        shell.work(format_translated("Reading {}", file.filename().string()),
+                   [&](const StageFunction& /*on_stage*/) { structure = read_structure(file); });
+    if (!is_done) return std::nullopt;
+    shell.show_behind(build_preview(structure));
+    return structure;
+}
+
+// Lets the person choose, where there is a choice; nothing where they changed their mind.
+std::optional<HandOffer> choose_hand_for(WindowShell& shell, const MadeScene& made, bool asks) {
+    std::vector<HandOffer> offers = list_hands(made.system);
+    if (offers.empty()) return HandOffer{};
+    std::optional<std::size_t> chosen = 0;
+    if (asks && offers.size() > 1) chosen = ask_for_hand(shell, made.system.structure, offers);
+    if (!chosen) return std::nullopt;
+    return std::move(offers[*chosen]);
+}
+
+MadeReport describe_made(const MadeScene& made, const fs::path& results) {
+    const PreparedSummary summary = summarise(made.system);
+    MadeReport report{.has_scene = !made.scene.files.empty()};
+    report.lines = {format_translated("What it is: {}.", summary.is),
+                    format_translated("What was added: {}.", summary.added),
+                    format_translated("What to look at first: {}.", summary.look_first)};
+    report.lines.push_back(
+        report.has_scene ? format_translated("In your hand: {}.", made.scene.in_hand)
+                         : std::string(translated(
+                               "No scene could be made from this structure; see the details.")));
+    report.details = format_translated("Written to {}", results.string()) + "\n\n" +
+                     made.system.report.to_plain_text();
+    return report;
+}
+
+struct WrittenScene {
+    MadeScene made;
+    fs::path folder;  // the new folder of its files
+    HandOffer in_hand;
+};
+
+// Asks what the person will hold if `asks`. Returns nothing where it was cancelled.
+std::optional<WrittenScene> prepare_below(WindowShell& shell, SceneRequest request,
+                                          const fs::path& folder, bool asks) {
+    const std::optional<Structure> structure = read_and_show(shell, request.structure);
+    if (!structure) return std::nullopt;
+    std::optional<MadeScene> made = make_with_remedies(shell, *structure, request);
+    if (!made) return std::nullopt;
+    std::optional<HandOffer> in_hand = choose_hand_for(shell, *made, asks);
+    if (!in_hand) return std::nullopt;
+    request.grab = in_hand->grab;
+    shell.show_behind(build_preview(made->system.structure, in_hand->atoms));
+    const std::string title =
+        format_translated("Preparing {}", request.structure.filename().string());
+    if (!shell.work(title,
+                    [&](const StageFunction& on_stage) { add_scene(request, on_stage, *made); }))
+        return std::nullopt;
+    WrittenScene written{std::move(*made), find_free_folder(folder, request.structure),
+                         std::move(*in_hand)};
+    write_prepared(written.made.system, written.folder, written.made.title,
+                   written.made.scene.files);
+    return written;
+}
+
 }  // namespace
+
+std::vector<std::vector<fs::path>> split_structures(std::span<const fs::path> files) {
+    std::vector<std::vector<fs::path>> groups;
+    for (const fs::path& file : files)
+        if (is_structure(file)) groups.push_back({file});
+    if (groups.size() < 2) return {{files.begin(), files.end()}};
+    const std::size_t structures = groups.size();
+    for (const fs::path& file : files) {
+        if (is_structure(file)) continue;
+        const bool is_of_all = is_of_force_field(file) || is_of_ligand(file);
+        bool is_of_one = false;
+        for (std::size_t i = 0; i < structures; ++i) {
+            const bool has_name = name_of_structure(groups[i][0]) == name_of_structure(file);
+            if (!is_of_all && !(is_topology(file) && has_name)) continue;
+            groups[i].push_back(file);
+            is_of_one = true;
+        }
+        if (!is_of_one) groups.push_back({file});
+    }
+    return groups;
+}
 
 std::optional<fs::path> open_structure(WindowShell& shell, std::span<const fs::path> files,
                                        const fs::path& folder, const std::string& said) {
-    const SceneRequest request = build_request(files);
-    const std::optional<MadeScene> made = make_with_remedies(shell, request);
-    if (!made) return std::nullopt;
-    const fs::path results = find_free_folder(folder, request.structure);
-    write_prepared(made->system, results, made->title, made->scene.files);
-    const bool has_scene = !made->scene.files.empty();
-    const std::size_t warnings = made->system.report.warnings().size();
-    std::string text = said.empty() ? std::string() : said + "\n";
-    text += format_translated("{} atoms. Written to {}", made->system.structure.names.size(),
-                              results.string());
-    text += "\n";
-    text += has_scene ? format_translated("In your hand: {}.", made->scene.in_hand)
-                      : std::string(translated(
-                            "No scene could be made from this structure; see the warnings below."));
-    text +=
-        "\n" + fmt::format(fmt::runtime(translated_plural("{} warning.", "{} warnings.", warnings)),
-                           warnings);
-    text += "\n\n" + made->system.report.to_text();
-    if (!show_report(shell, text, has_scene)) {
+    const PictureOfPages picture(shell);
+    const std::optional<WrittenScene> written =
+        prepare_below(shell, build_request(files), folder, true);
+    if (!written) return std::nullopt;
+    MadeReport report = describe_made(written->made, written->folder);
+    if (!said.empty()) report.lines.insert(report.lines.begin(), said);
+    shell.show_behind(build_preview(written->made.system.structure, written->in_hand.atoms),
+                      1 - page_share);
+    if (!show_report(shell, report)) {
         std::error_code error;
-        fs::remove_all(results, error);  // it was made just now
+        fs::remove_all(written->folder, error);  // it was made just now
         return std::nullopt;
     }
-    return results / "scene.toml";
+    return written->folder / "scene.toml";
+}
+
+PreparedEach prepare_each(WindowShell& shell, std::span<const std::vector<fs::path>> groups,
+                          const fs::path& folder) {
+    const PictureOfPages picture(shell);
+    PreparedEach each;
+    const auto note_problem = [&](std::string problem) {
+        if (each.problem.empty()) each.problem = std::move(problem);
+    };
+    std::vector<std::string> made;
+    for (const std::vector<fs::path>& group : groups) {
+        try {
+            const std::optional<WrittenScene> written =
+                prepare_below(shell, build_request(group), folder, false);
+            if (!written) {
+                note_problem(
+                    format_translated("{} was not prepared.", group[0].filename().string()));
+                if (shell.window().should_close()) break;
+            } else if (written->made.scene.files.empty()) {
+                note_problem(format_translated("No scene could be made from {}; see {}.",
+                                               group[0].filename().string(),
+                                               (written->folder / "report.txt").string()));
+            } else {
+                made.push_back(written->folder.filename().string());
+            }
+        } catch (const LoadError& error) {
+            note_problem(error.what());
+        }
+    }
+    if (!made.empty())
+        each.said = format_translated("Prepared {} of {} structures, see Yours: {}.", made.size(),
+                                      groups.size(), fmt::format("{}", fmt::join(made, ", ")));
+    return each;
 }
 
 }  // namespace palpa

@@ -284,6 +284,13 @@ bool is_panel_open(const World& app, std::string_view id) {
     return app.resource<Docks>().is_open.at(id);
 }
 
+bool is_panel_seen(const World& app, std::string_view id) {
+    const Docks& docks = app.resource<Docks>();
+    const auto front = docks.front.find(panel_called(id).side);
+    return docks.is_shown && is_panel_open(app, id) && front != docks.front.end() &&
+           front->second == id;
+}
+
 void toggle_panel(World& app, std::string_view id) {
     is_panel_open(app, id) ? close_panel(app, id) : open_panel(app, id);
 }

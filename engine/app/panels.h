@@ -72,6 +72,8 @@ void bring_forward(World& app, std::string_view id);
 void open_panel(World& app, std::string_view id, bool takes_keys = false);
 void close_panel(World& app, std::string_view id);
 bool is_panel_open(const World& app, std::string_view id);
+// Whether it is in front of its dock, and docks are shown.
+bool is_panel_seen(const World& app, std::string_view id);
 void toggle_panel(World& app, std::string_view id);
 
 // Closes what was opened last: a list, a panel over the picture. False if nothing is open.

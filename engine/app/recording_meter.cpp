@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <system_error>
+#include <utility>
 
 namespace palpa {
 
@@ -44,13 +45,12 @@ std::optional<RecordingState> RecordingMeter::measure(const fs::path& folder, do
     const fs::space_info space = fs::space(folder, error);
     if (!error) state.free_bytes = space.available;
     // The journal before a recording is written at its begin, and is no part of the rate.
-    if (is_new) from_ = state;
+    if (is_new) before_ = from_ = state;
     folder_ = folder;
-    if (const double passed_s = recorded_s - from_.recorded_s; passed_s > 0) {
+    if (const double passed_s = recorded_s - before_.recorded_s; passed_s > 0)
         state.bytes_per_s =
-            (static_cast<double>(state.bytes) - static_cast<double>(from_.bytes)) / passed_s;
-        if (passed_s > rate_s) from_ = state;
-    }
+            (static_cast<double>(state.bytes) - static_cast<double>(before_.bytes)) / passed_s;
+    if (recorded_s - from_.recorded_s > rate_s) before_ = std::exchange(from_, state);
     return state;
 }
 

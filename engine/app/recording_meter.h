@@ -13,7 +13,7 @@ struct RecordingState {
     double recorded_s = 0;
     std::uint64_t bytes = 0;                    // of all its files
     std::optional<std::uint64_t> free_bytes{};  // left on the disk; nothing: not known
-    double bytes_per_s = 0;                     // of the last 10 s; 0: not known yet
+    double bytes_per_s = 0;                     // of the last 10 to 20 s; 0: not known yet
 };
 
 // Seconds until the disk is full at the present rate; nothing while that is not known.
@@ -40,7 +40,7 @@ public:
 private:
     std::filesystem::path folder_;
     std::chrono::steady_clock::time_point measured_{};
-    RecordingState from_;  // the rate is that since then
+    RecordingState before_, from_;  // 10 s apart; the rate is that since the older one
 };
 
 }  // namespace palpa

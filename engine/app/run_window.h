@@ -130,7 +130,8 @@ struct NextScreen {
     std::vector<std::filesystem::path> files{};  // files to open
     // PDB entry to download and open, with the files; neither: the start screen.
     std::string code{};
-    std::filesystem::path left{};  // the scene before
+    std::filesystem::path left{};   // the scene before
+    std::string said{}, problem{};  // on the start screen: what was done; what was not, and why
 
     bool is_start() const noexcept { return files.empty() && code.empty(); }
 };

@@ -3,6 +3,7 @@
 #include "app/preferences.h"
 #include "core/load_error.h"
 #include "core/text.h"
+#include "render/picture_sheet.h"
 #include "scene/choices.h"
 
 #include <fmt/format.h>
@@ -37,6 +38,7 @@ CardGroup group_of(const SceneEntry& scene) {
 }
 
 std::optional<std::size_t> add_picture(const fs::path& scene, std::vector<Picture>& pictures) {
+    if (pictures.size() >= most_sheet_pictures) return std::nullopt;
     try {
         const fs::path file = find_card_picture(scene);
         std::error_code error;
@@ -94,7 +96,8 @@ fs::path find_card_picture(const fs::path& scene) {
     if (fs::exists(beside, error)) return beside;
     const std::optional<fs::path> folder = find_cache_folder("pictures");
     if (!folder) return {};
-    return *folder / fmt::format("{:016x}.png", number_of(fs::absolute(scene, error).string()));
+    return *folder / fmt::format("{:016x}.png",
+                                 number_of(fs::absolute(scene, error).lexically_normal().string()));
 }
 
 }  // namespace palpa

@@ -1,5 +1,6 @@
 #include "app/selecting.h"
 
+#include "app/marks.h"
 #include "app/notices.h"
 #include "app/panels.h"
 #include "app/settings.h"
@@ -60,6 +61,7 @@ void select_anew(World& app) {
     const bool is_first = !selection.known_atoms;
     selection.known_atoms = atoms;
     if (is_first) return;
+    app.write<Measuring>().atoms.clear();  // numbers of atoms have changed
     app.write<SavedViewState>().framed.clear();
     app.write<PictureState>().sent = {};  // molecules that were left out may be back
     if (selection.atoms.empty()) return;

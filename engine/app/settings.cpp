@@ -77,6 +77,7 @@ void take_ticks(World& app) {
             WindowHand& hand = hands.all[slot];
             hand.lead.see(tick.reading.position_m, tick.contact.displacement_gain);
             hand.felt_newton = tick.sent_newton.norm();
+            hand.molecule_nN = 1e9 * tick.contact.force_newton.norm();
             hand.waiting_m = tick.waiting_m;
             hand.is_at_wall = tick.overtravel_m.norm() > least_overtravel_m;
             hand.is_at_stop = tick.is_at_stop && !tick.clutched;

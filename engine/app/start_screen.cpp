@@ -85,6 +85,7 @@ private:
     void draw_recent();
     void draw_devices();
     void draw_messages();
+    float height_of_messages() const;
     void choose_device(const std::string& name);
     void choose_sound(bool is_on);
     void load_pictures();
@@ -119,7 +120,8 @@ StartScreen::StartScreen(WindowShell& shell, const StartOptions& options)
       scenes_(list_cards(options.cards)),
       asks_for_sound_(options.asks_for_sound),
       device_(options.device),
-      problem_(options.problem) {
+      problem_(options.problem),
+      notice_(options.said) {
     shell.window().set_title("Palpa");
     const auto next = std::ranges::find(cards_, false, &SceneCard::is_done);
     if (next != cards_.end()) chosen_ = static_cast<std::size_t>(next - cards_.begin());
@@ -161,8 +163,8 @@ void StartScreen::load_pictures() {
 }
 
 void StartScreen::take_input() {
-    if (shell_.window().should_close()) is_over_ = true;
     const Input& input = shell_.poll();
+    if (shell_.window().should_close()) is_over_ = true;
     if (input.rescaled) {
         drop_pictures();
         shell_.restart_graphics();
@@ -176,7 +178,7 @@ void StartScreen::press(const KeyPress& press) {
         if (press.key == Key::Escape) return browser_.close();
         return browser_.press(press.key);
     }
-    if (ImGui::GetIO().WantTextInput && !searches_ && !(press.control && press.key == Key::Q)) {
+    if (ImGui::GetIO().WantTextInput && !searches_) {
         if (press.key == Key::Enter) code_field_.enter();
         if (press.key == Key::Escape) ImGui::SetWindowFocus(nullptr);  // leaves the field
         return;
@@ -189,15 +191,16 @@ void StartScreen::press(const KeyPress& press) {
     if (press.control && press.key == Key::Minus)
         return scale_text(shell_.text_scale() / text_step);
     if (press.control && press.key == Key::Digit0) return scale_text(1);
-    if (press.key == Key::Q && press.control) is_over_ = true;
     if (press.key == Key::F && press.control) wants_search_ = true;
     if (press.key == Key::Escape) return go_back();
-    if (press.key == Key::Right) move(1, 0);
-    if (press.key == Key::Left) move(-1, 0);
+    if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) return;
+    const bool moves_in_text = searches_ && !searched_.empty();
+    if (press.key == Key::Right && !moves_in_text) move(1, 0);
+    if (press.key == Key::Left && !moves_in_text) move(-1, 0);
     if (press.key == Key::Down) move(0, 1);
     if (press.key == Key::Up) move(0, -1);
     if (press.key == Key::Enter) open_chosen();
-    if (ImGui::GetIO().WantTextInput) return;
+    if (ImGui::GetIO().WantTextInput || wants_search_) return;
     if (press.key == Key::Space) open_chosen();
     if (press.key == Key::O) browse();
     if (press.key == Key::P) code_field_.focus();
@@ -208,7 +211,7 @@ void StartScreen::press(const KeyPress& press) {
 void StartScreen::go_back() {
     if (ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) {
         closes_list_ = true;
-    } else if (!searched_.empty()) {
+    } else if (searches_ || !searched_.empty()) {
         searched_.clear();
         ImGui::ClearActiveID();
     } else if (options_.before) {
@@ -266,7 +269,7 @@ void StartScreen::describe() {
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollbar);
     draw_header();
     const float side = std::min(scaled(280), 0.38F * screen.x);
-    const float below = 2.2F * ImGui::GetTextLineHeightWithSpacing();
+    const float below = height_of_messages();
     ImGui::BeginChild("##cards", {-side - panel_edge(), -below}, false,
                       ImGuiWindowFlags_NoBackground);
     draw_cards();
@@ -282,6 +285,19 @@ void StartScreen::describe() {
         open(*file);
     }
     moved_ = closes_list_ = false;
+}
+
+// Two lines, or more where the messages need them.
+float StartScreen::height_of_messages() const {
+    constexpr float usual_lines = 2.2F, most_lines = 8.2F;
+    const float line = ImGui::GetTextLineHeightWithSpacing();
+    const float width = ImGui::GetContentRegionAvail().x;
+    float height = 0.4F * line;
+    for (const std::string* const text : {&problem_, &notice_})
+        if (!text->empty())
+            height += ImGui::CalcTextSize(text->c_str(), nullptr, false, width).y +
+                      ImGui::GetStyle().ItemSpacing.y;
+    return std::clamp(height, usual_lines * line, most_lines * line);
 }
 
 void StartScreen::find_seen() {
@@ -325,9 +341,8 @@ void StartScreen::draw_messages() {
         ImGui::PushStyleColor(ImGuiCol_Text, colours().wrong);
         ImGui::TextWrapped("%s", problem_.c_str());
         ImGui::PopStyleColor();
-    } else if (!notice_.empty()) {
-        ImGui::TextWrapped("%s", notice_.c_str());
     }
+    if (!notice_.empty()) ImGui::TextWrapped("%s", notice_.c_str());
 }
 
 void StartScreen::draw_cards() {

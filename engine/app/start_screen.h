@@ -25,6 +25,7 @@ struct StartOptions {
     std::filesystem::path folder{};  // in which a file was looked for last; empty: the current one
     std::function<void(const std::string&)> remember_folder{};  // throws LoadError
     std::string problem{};        // why the last file could not be opened
+    std::string said{};           // what was done with the last files
     SoundChoice sound{};          // as it was chosen last
     bool asks_for_sound = false;  // it was never chosen
 };

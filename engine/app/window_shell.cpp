@@ -8,6 +8,7 @@
 #include "render/picture.h"
 #include "ui/colours.h"
 #include "ui/layout.h"
+#include "view/orbit_camera.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -16,6 +17,7 @@
 #include <chrono>
 #include <future>
 #include <mutex>
+#include <numbers>
 #include <optional>
 #include <string_view>
 #include <thread>
@@ -43,9 +45,11 @@ public:
         };
     }
 
-    void draw(const std::string& title, double seconds) {
+    // `is_below`: at the lower edge, below a picture.
+    void draw(const std::string& title, double seconds, bool is_below) {
         const ImVec2 screen = ImGui::GetIO().DisplaySize;
-        ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
+        const float y = is_below ? 0.88F : 0.5F;
+        ImGui::SetNextWindowPos({screen.x / 2, y * screen.y}, ImGuiCond_Always, {0.5F, 0.5F});
         ImGui::SetNextWindowSize({std::min(scaled(480), screen.x - 2 * panel_edge()), 0});
         ImGui::Begin("##task", nullptr, fixed_panel | ImGuiWindowFlags_NoTitleBar);
         ImGui::TextWrapped("%s", title.c_str());
@@ -110,6 +114,22 @@ Graphics::Graphics(const Window& window, bool validation, double text_scale)
       renderer(device),
       ui(window, device, swapchain.overlay_pass(), swapchain.image_count(),
          static_cast<float>(text_scale) * window.content_scale()) {}
+
+void stretch_over(VkCommandBuffer commands, const Renderer& renderer, VkExtent2D size,
+                  VkImage image, VkExtent2D image_size) {
+    const auto corner = [](VkExtent2D extent) {
+        return VkOffset3D{static_cast<std::int32_t>(extent.width),
+                          static_cast<std::int32_t>(extent.height), 1};
+    };
+    VkImageBlit region{};
+    region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.srcOffsets[1] = corner(size);
+    region.dstOffsets[1] = corner(image_size);
+    const bool same = size.width == image_size.width && size.height == image_size.height;
+    vkCmdBlitImage(commands, renderer.colour_image(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, image,
+                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region,
+                   same ? VK_FILTER_NEAREST : VK_FILTER_LINEAR);
+}
 
 WindowShell::WindowShell(const ShellOptions& options)
     : options_(options),
@@ -179,9 +199,37 @@ std::string WindowShell::change_theme(bool is_dark) {
 const Input& WindowShell::poll() {
     const Input& input = window_.poll();
     must_rebuild_ = must_rebuild_ || input.resized;
-    const auto is_asked = [](const KeyPress& press) { return press.key == Key::F12; };
-    wants_shot_ = wants_shot_ || std::ranges::any_of(input.pressed, is_asked);
+    for (const KeyPress& press : input.pressed) {
+        wants_shot_ = wants_shot_ || press.key == Key::F12;
+        if (press.control && press.key == Key::Q) window_.close();
+    }
     return input;
+}
+
+void WindowShell::show_behind(std::optional<FrameScene> picture, float free_share) {
+    if (!picture) return behind_.reset();
+    if (!behind_) behind_.emplace();
+    behind_->picture = std::move(*picture);  // it turns on from where it is
+    behind_->free_share = free_share;
+}
+
+void WindowShell::paint_behind(VkCommandBuffer commands, VkImage image) {
+    constexpr float turns_per_s = 1 / 24.0F;
+    const VkExtent2D size = graphics_->swapchain.size();
+    FrameScene& picture = behind_->picture;
+    const std::chrono::duration<float> passed = std::chrono::steady_clock::now() - behind_->since;
+    OrbitCamera camera;
+    camera.azimuth = 2 * std::numbers::pi_v<float> * turns_per_s * passed.count();
+    const float aspect =
+        static_cast<float>(size.width) / static_cast<float>(std::max(size.height, 1U));
+    // Above what is said below of work that goes on.
+    const float free_height = behind_->free_share < 1 ? 1 : 0.78F;
+    frame_all(camera, picture, {behind_->free_share * aspect, free_height});
+    picture.camera = frame_camera(camera, picture);
+    picture.camera.centre = {behind_->free_share - 1, 1 - free_height};
+    picture.background = colours().background;
+    graphics_->renderer.record(commands, picture, size);
+    stretch_over(commands, graphics_->renderer, size, image, size);
 }
 
 void WindowShell::draw_panels(const std::function<void()>& describe,
@@ -196,14 +244,14 @@ void WindowShell::draw_panels(const std::function<void()>& describe,
     must_rebuild_ = !g.swapchain.present(
         [&](VkCommandBuffer commands, VkImage image) {
             clear(commands, image);
-            if (!paint) return;
+            if (!paint && !behind_) return;
             VkMemoryBarrier cleared{};
             cleared.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
             cleared.srcAccessMask = cleared.dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
             vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
                                  VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1, &cleared, 0, nullptr, 0,
                                  nullptr);
-            paint(commands, image);
+            paint ? paint(commands, image) : paint_behind(commands, image);
         },
         [&](VkCommandBuffer commands) { g.ui.draw(commands); }, wants_shot_ ? &shot : nullptr);
     if (shot.rgba.empty()) return;
@@ -243,7 +291,7 @@ bool WindowShell::work(const std::string& title,
                 if (window_.should_close() || std::ranges::any_of(input.pressed, is_escape))
                     progress.is_cancelled = true;
                 const std::chrono::duration<double> passed = SteadyClock::now() - begin;
-                draw_panels([&] { progress.draw(title, passed.count()); });
+                draw_panels([&] { progress.draw(title, passed.count(), behind_.has_value()); });
                 const std::chrono::duration<double, std::milli> pause =
                     SteadyClock::now() - std::exchange(last_picture, SteadyClock::now());
                 longest_pause_ms_ = std::max(longest_pause_ms_, pause.count());

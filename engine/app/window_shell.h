@@ -10,6 +10,7 @@
 #include "window/window.h"
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -79,6 +80,17 @@ struct Graphics {
     UiBackend ui;
 };
 
+// A picture behind panels, which turns.
+struct PictureBehind {
+    FrameScene picture{};
+    float free_share = 1;  // of the width
+    std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
+};
+
+// Stretches the renderer's picture over an image of the window.
+void stretch_over(VkCommandBuffer commands, const Renderer& renderer, VkExtent2D size,
+                  VkImage image, VkExtent2D image_size);
+
 // One instance at a time, on the main thread.
 class WindowShell {
 public:
@@ -109,12 +121,17 @@ public:
     void run(double most_frames_per_s, const std::function<bool()>& frame,
              const std::function<void()>& on_lost);
 
-    // Reads the input for a screen of panels. F12 requests a screenshot.
+    // Reads the input for a screen of panels. F12 requests a screenshot, Ctrl+Q closes
+    // the window.
     const Input& poll();
     // Draws one frame of panels, which `describe` describes to ImGui; does nothing while the window
     // is minimised. `paint` draws pictures below the panels into an image in TRANSFER_DST_OPTIMAL.
     void draw_panels(const std::function<void()>& describe,
                      const std::function<void(VkCommandBuffer, VkImage)>& paint = {});
+    // Shows this picture behind all panels from now on, turning slowly, in the part of the window
+    // to the left of `free_share` of its width; none: nothing.
+    void show_behind(std::optional<FrameScene> picture, float free_share = 1);
+
     // Where a screenshot was saved, or why it could not be saved, since the last call.
     std::string take_notice() { return std::exchange(notice_, {}); }
 
@@ -131,6 +148,7 @@ public:
 
 private:
     void keep_validation_messages();
+    void paint_behind(VkCommandBuffer commands, VkImage image);
 
     ShellOptions options_;
     // Created before this thread lowers its priority, so that it and the threads that it starts
@@ -141,6 +159,7 @@ private:
     std::unique_ptr<Graphics> graphics_;
     bool must_rebuild_ = false;  // draw_panels() must rebuild the swapchain
     bool wants_shot_ = false;
+    std::optional<PictureBehind> behind_;
     double longest_pause_ms_ = 0;
     std::string notice_;
     std::vector<std::string> validation_messages_;

@@ -74,6 +74,7 @@ struct WindowHand {
     MouseLead lead{mouse_reach_m};  // by mouse or keys
     bool is_leading = false;        // a person does so now
     double felt_newton = 0;         // sent to the device at this moment
+    double molecule_nN = 0;         // on what is in hand, at this moment
     Vec3 waiting_m = Vec3::Zero();  // handle travel that the molecule has yet to follow
     bool is_at_wall = false;        // the contact force has stopped the molecule
     bool is_at_stop = false;        // the handle is at an end of its workspace
@@ -219,6 +220,7 @@ struct LessonState {
     LessonCurve curve{};
     std::optional<std::uint64_t> awaited_reset{};  // its number, while a restart waits for it
     bool saw_reset = false;                        // in the last readout
+    SteadyClock::time_point since{};               // the present step is there
     bool was_skipped = false;                      // a step, since the start
     bool is_noted = false;                         // that it is done
 };

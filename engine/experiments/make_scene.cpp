@@ -59,8 +59,8 @@ TunedScene find_scene(const SceneRequest& request, const std::string& title,
     try {
         const std::string name =
             request.title.empty() ? name_of_structure(request.structure).string() : request.title;
-        return tune_scene(system, request.grab, request.settings.align.has_value(), printable(name),
-                          title, on_stage);
+        return tune_scene(system, request.grab, request.settings.align.has_value(),
+                          request.measures, printable(name), title, on_stage);
     } catch (const LoadError& error) {
         if (!request.grab.empty()) throw;
         system.report.warn(fmt::format("no scene was written: {}", error.what()));
@@ -70,7 +70,7 @@ TunedScene find_scene(const SceneRequest& request, const std::string& title,
 
 }  // namespace
 
-MadeScene make_scene(const SceneRequest& request, const StageFunction& on_stage) {
+MadeScene prepare_request(const SceneRequest& request, const StageFunction& on_stage) {
     tell(on_stage, for_translation("reading the force field"));
     const ForceField force_field = read_wanted_force_field(request);
     tell(on_stage, for_translation("reading the structure"));
@@ -86,7 +86,16 @@ MadeScene make_scene(const SceneRequest& request, const StageFunction& on_stage)
     const std::string origin = fmt::format("Prepared from {} by palpa prepare; see report.txt.",
                                            request.structure.filename().string());
     made.title = request.title.empty() ? origin : fmt::format("{}\n{}", request.title, origin);
+    return made;
+}
+
+void add_scene(const SceneRequest& request, const StageFunction& on_stage, MadeScene& made) {
     made.scene = find_scene(request, made.title, on_stage, made.system);
+}
+
+MadeScene make_scene(const SceneRequest& request, const StageFunction& on_stage) {
+    MadeScene made = prepare_request(request, on_stage);
+    add_scene(request, on_stage, made);
     return made;
 }
 

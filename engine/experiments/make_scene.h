@@ -18,6 +18,7 @@ struct SceneRequest {
     bool only_these_files = false;                   // without the built-in force field
     PrepareSettings settings{};
     bool makes_scene = true;  // false: only the prepared system
+    bool measures = true;     // gains and period, by playing; false: the window does it
     std::string grab{};       // as for tune_scene
     std::string title{};      // title in the files; empty: a default one
 };
@@ -28,8 +29,15 @@ struct MadeScene {
     std::string title;  // title for write_prepared
 };
 
-// If no scene can be made, the structure is prepared all the same and the report gives the reason.
-// Throws LoadError as prepare_system does (also UnknownResidues), and if `grab` names nothing.
+// Prepares the system, without a scene. Throws LoadError as prepare_system does (also
+// UnknownResidues).
+MadeScene prepare_request(const SceneRequest& request, const StageFunction& on_stage);
+
+// Adds the scene if it is wanted. If none can be made the report gives the reason. Throws LoadError
+// if `grab` names nothing.
+void add_scene(const SceneRequest& request, const StageFunction& on_stage, MadeScene& made);
+
+// Both, one after the other.
 MadeScene make_scene(const SceneRequest& request, const StageFunction& on_stage);
 
 }  // namespace palpa

@@ -16,6 +16,7 @@
 #include "prepare/region_choice.h"
 #include "prepare/residues.h"
 #include "prepare/scene_of.h"
+#include "scene/description.h"
 #include "scene/read_scene.h"
 #include "session/run_headless.h"
 #include "simulation/grip_queries.h"
@@ -43,11 +44,10 @@ struct SystemCopy {
     HandChoice hand;
 };
 
-SystemCopy copy_for_scene(const PreparedSystem& system, const std::string& grab) {
+SystemCopy copy_for_scene(const PreparedSystem& system) {
     SystemCopy copy{system.structure, system.connectivity, {}, {}, {}};
     copy.joined = join_bonded_segments(copy.structure, copy.connectivity);
     copy.segments = find_segments(copy.structure, copy.connectivity);
-    copy.hand = choose_hand(copy.structure, copy.segments, grab);
     return copy;
 }
 
@@ -89,9 +89,7 @@ Played play(const SceneDescription& scene, World& world, std::string_view stage,
         played.renewed =
             static_cast<double>(summary.relaxation->renewals) / static_cast<double>(summary.steps);
     }
-    // Steps in which the model is renewed take a hundred times as long as others, and come late.
-    constexpr double ordinary = 10;
-    if (played.renewed > 0) played.p99_us = std::min(played.p99_us, ordinary * played.median_us);
+    if (played.renewed > 0) played.p99_us = ordinary_p99(played.median_us, played.p99_us);
     return played;
 }
 
@@ -100,22 +98,6 @@ constexpr double least_felt = 0.3, least_moved = 1;  // N, Å
 double two_digits(double value) {
     const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
     return std::round(value / unit) * unit;
-}
-
-// A tenth of a strong force is felt as 0.3 N, a strong one as 1.3 N; what is thrice as strong as
-// 2.7 N. So neither friction (0.26 N) hides what is there, nor do motors get warm of it.
-std::array<double, 2> choose_range(double strong_pN) {
-    constexpr double weakest = 10, strongest = 3e5;  // so that the key takes what comes of it
-    const double strong = std::clamp(strong_pN, weakest, strongest);
-    return {two_digits(strong / 10), two_digits(3 * strong)};
-}
-
-// With room for what else the machine does. In a window the drawing, too, takes cores away, for
-// some milliseconds at a time where there is no graphics card; guarded coupling needs no shorter
-// period.
-double choose_period_ms(double p99_us) {
-    constexpr double headroom = 1.5, shortest = 5, longest = 1000;
-    return std::clamp(std::ceil(headroom * 1e-3 * p99_us), shortest, longest);
 }
 
 // Fewer for larger systems, so that it takes no more than some minutes.
@@ -136,6 +118,7 @@ struct Tuning {
     std::string title, topology_title;  // of files
     bool is_turned = true;              // the way out is +x
     bool may_hold_another = true;       // nothing was asked for
+    bool measures = true;               // gains and period
     Structure rest;                     // the copy's atoms where their joints came to rest
     Vec3 way = Vec3::UnitX();
     SceneText text;
@@ -214,7 +197,8 @@ Played play_written(const std::filesystem::path& folder, std::string_view stage,
 
 void set_period(const Played& played, Tuning& tuning) {
     tuning.p99_us = played.p99_us;
-    tuning.tuning.period_ms = choose_period_ms(played.p99_us);
+    tuning.tuning.period_ms = choose_period_ms(1e-3 * played.p99_us);
+    tuning.tuning.measured_on = machine_name();
     tuning.measured = played.renewed > 0 ? "99 % of steps without a renewal" : "99 % of steps";
     tuning.tuning.period_note = fmt::format(
         "1.5 times what {} took here, 5 ms at least: {:.2f} ms ({:.2f} ms in the "
@@ -240,8 +224,10 @@ void set_coupling(const Played& first, Tuning& tuning) {
         first.strong_pN);
 }
 
-void report_scene(const Played& played, const Tuning& tuning, Report& report) {
-    constexpr std::string_view heading = "Scene";
+constexpr std::string_view scene_heading = "Scene";
+
+void report_hand(const Tuning& tuning, Report& report) {
+    constexpr std::string_view heading = scene_heading;
     const HandChoice& hand = tuning.copy.hand;
     report.add(
         heading,
@@ -271,6 +257,11 @@ void report_scene(const Played& played, const Tuning& tuning, Report& report) {
                                         "radian and Å remains; relax further with palpa relax",
                                         tuning.relaxed.rms_force));
     }
+}
+
+void report_scene(const Played& played, const Tuning& tuning, Report& report) {
+    constexpr std::string_view heading = scene_heading;
+    report_hand(tuning, report);
     if (const auto range = tuning.tuning.feel_pN) {
         report.add(heading, fmt::format("guarded coupling; forces of {} to {} pN are felt as 0.3 "
                                         "to 2.7 N",
@@ -339,7 +330,8 @@ Played tune_coupling(const Played& first, const std::filesystem::path& folder,
     set_period(first, tuning);
     const Played played = play_written(folder, for_translation("playing the scene"), {way_out_only},
                                        on_stage, tuning);
-    if (choose_period_ms(played.p99_us) > tuning.tuning.period_ms) set_period(played, tuning);
+    if (choose_period_ms(1e-3 * played.p99_us) > tuning.tuning.period_ms)
+        set_period(played, tuning);
     return played;
 }
 
@@ -375,6 +367,17 @@ void hold_residue(const std::string& firmness, Tuning& tuning) {
     describe_hand(tuning);
 }
 
+// Guesses, which the window replaces by what it measures.
+void set_unmeasured(Tuning& tuning) {
+    constexpr std::array<double, 2> usual_pN{100, 3000};
+    take_way(find_way_out(tuning.rest, tuning.copy.hand.held), tuning);
+    tuning.tuning.feel_pN = usual_pN;
+    tuning.tuning.period_ms = first_period_ms(tuning.rest.names.size());
+    tuning.tuning.coupling_note = tuning.tuning.period_note =
+        "Not measured yet: the window does it while a hand plays.";
+    tuning.tuning.measured_on = unmeasured;
+}
+
 TunedScene tune(PreparedSystem& system, Tuning& tuning, const StageFunction& tell_stage) {
     const WorkFolder scratch;
     const StageFunction on_stage = [&](std::string_view stage, std::optional<double> share) {
@@ -388,6 +391,11 @@ TunedScene tune(PreparedSystem& system, Tuning& tuning, const StageFunction& tel
     if (!tuning.tuning.region_angstrom &&
         tuning.joints + base_freedom > static_cast<std::size_t>(most_second_order_coordinates)) {
         rest_region(folder, on_stage, tuning);
+    }
+    if (!tuning.measures && !holds_chain(tuning)) {
+        set_unmeasured(tuning);
+        report_hand(tuning, system.report);
+        return {tuning.files(), tuning.copy.hand.words};
     }
     Played first = play_first(folder, on_stage, tuning);
     const std::string firmness = describe_firmness(first);
@@ -421,17 +429,46 @@ std::vector<std::string> find_rigid(const Structure& structure,
 
 }  // namespace
 
+std::array<double, 2> choose_range(double strong_pN) {
+    constexpr double weakest = 10, strongest = 3e5;  // so that the key takes what comes of it
+    const double strong = std::clamp(strong_pN, weakest, strongest);
+    return {two_digits(strong / 10), two_digits(3 * strong)};
+}
+
+double choose_period_ms(double p99_ms) {
+    constexpr double headroom = 1.5, shortest = 5, longest = 1000;
+    return std::clamp(std::ceil(headroom * p99_ms), shortest, longest);
+}
+
+double ordinary_p99(double median, double p99) {
+    constexpr double ordinary = 10;
+    return std::min(p99, ordinary * median);
+}
+
+std::vector<HandOffer> list_hands(const PreparedSystem& system) {
+    const SystemCopy copy = copy_for_scene(system);
+    std::vector<HandOffer> offers;
+    for (HandChoice& choice : list_hand_choices(copy.structure, copy.segments)) {
+        std::string grab = offers.empty() ? std::string() : grab_of(choice);
+        std::string words = translated_words(copy.structure, choice);
+        offers.push_back({std::move(grab), std::move(words), std::move(choice.held)});
+    }
+    return offers;
+}
+
 TunedScene tune_scene(PreparedSystem& system, const std::string& grab, bool is_aligned,
-                      const std::string& name, const std::string& title,
+                      bool measures, const std::string& name, const std::string& title,
                       const StageFunction& on_stage) {
     tell(on_stage, for_translation("choosing what the hand holds"));
     Tuning tuning;
-    tuning.copy = copy_for_scene(system, grab);
+    tuning.copy = copy_for_scene(system);
+    tuning.copy.hand = choose_hand(tuning.copy.structure, tuning.copy.segments, grab);
     tuning.title = title;
     tuning.topology_title = topology_title(system, title);
     tuning.text.solvent = system.solvent;
     if (system.reduced_phosphates > 0) tuning.text.dielectric = nucleic_dielectric;
     tuning.is_turned = !is_aligned;
+    tuning.measures = measures;
     tuning.may_hold_another = grab.empty();
     tuning.rest = tuning.copy.structure;
     tuning.text.title = name;

@@ -1,6 +1,7 @@
 #include "prepare/hand_choice.h"
 
 #include "core/load_error.h"
+#include "core/translate.h"
 #include "prepare/residues.h"
 
 #include <fmt/format.h>
@@ -53,18 +54,34 @@ std::size_t count_neighbours(const Structure& structure, std::span<const std::ui
     }));
 }
 
-HandChoice hold_residue(const Structure& structure, const SystemSegment& segment,
-                        std::vector<std::uint32_t> residue, std::string reason) {
-    const AtomName& name = structure.names[residue.front()];
-    return {
-        segment.name, name.number, std::move(residue),
-        fmt::format("residue {} {} of {}, on a spring", name.residue, name.number, segment.name),
-        std::move(reason)};
+std::string say(const Structure& structure, const HandChoice& choice, bool translates) {
+    const auto write = [&](const char* text, const auto&... values) {
+        return fmt::format(fmt::runtime(translates ? translated(text) : text), values...);
+    };
+    if (choice.atom.empty()) return write(for_translation("the whole molecule {}"), choice.segment);
+    const AtomName& name = structure.names[choice.held.front()];
+    if (choice.atom == name.number)
+        return write(for_translation("residue {} {} of {}, on a spring"), name.residue, name.number,
+                     choice.segment);
+    return write(for_translation("atom {} of {} {} {}, on a spring"), name.atom, name.residue,
+                 name.number, choice.segment);
 }
 
-HandChoice hold_all(const SystemSegment& segment, std::string reason) {
-    return {segment.name, "", segment.atoms, fmt::format("the whole molecule {}", segment.name),
-            std::move(reason)};
+HandChoice hold(const Structure& structure, const SystemSegment& segment, std::string atom,
+                std::vector<std::uint32_t> held, std::string reason) {
+    HandChoice choice{segment.name, std::move(atom), std::move(held), {}, std::move(reason)};
+    choice.words = say(structure, choice, false);
+    return choice;
+}
+
+HandChoice hold_residue(const Structure& structure, const SystemSegment& segment,
+                        std::vector<std::uint32_t> residue, std::string reason) {
+    std::string number = structure.names[residue.front()].number;
+    return hold(structure, segment, std::move(number), std::move(residue), std::move(reason));
+}
+
+HandChoice hold_all(const Structure& structure, const SystemSegment& segment, std::string reason) {
+    return hold(structure, segment, {}, segment.atoms, std::move(reason));
 }
 
 // Of a molecule without residues to choose from.
@@ -81,12 +98,8 @@ HandChoice hold_atom(const Structure& structure, const SystemSegment& segment,
     }
     const std::uint32_t atom = best.value_or(segment.atoms.front());
     const AtomName& name = structure.names[atom];
-    return {segment.name,
-            fmt::format("{} {}", name.number, name.atom),
-            {atom},
-            fmt::format("atom {} of {} {} {}, on a spring", name.atom, name.residue, name.number,
-                        segment.name),
-            "the molecule has only one residue"};
+    return hold(structure, segment, fmt::format("{} {}", name.number, name.atom), {atom},
+                "the molecule has only one residue");
 }
 
 HandChoice hold_most_exposed(const Structure& structure, const SystemSegment& segment) {
@@ -119,8 +132,9 @@ const SystemSegment& find_largest(const Structure& structure,
                     "there is no molecule to hold: only water, ions and fragments");
 }
 
+constexpr std::size_t most_in_hand = 2000;  // atoms
+
 HandChoice choose_by_size(const Structure& structure, std::span<const SystemSegment> segments) {
-    constexpr std::size_t most_in_hand = 2000;  // atoms
     const SystemSegment& largest = find_largest(structure, segments);
     const SystemSegment* smallest = &largest;
     for (const SystemSegment& segment : segments) {
@@ -129,8 +143,9 @@ HandChoice choose_by_size(const Structure& structure, std::span<const SystemSegm
     }
     if (smallest != &largest && smallest->atoms.size() <= most_in_hand) {
         const bool is_alone = smallest->atoms.size() < largest.atoms.size();
-        return hold_all(*smallest, is_alone ? "it is the smallest molecule"
-                                            : "it is the last of several equal molecules");
+        return hold_all(
+            structure, *smallest,
+            is_alone ? "it is the smallest molecule" : "it is the last of several equal molecules");
     }
     return hold_most_exposed(structure, largest);
 }
@@ -140,7 +155,7 @@ HandChoice choose_by_name(const Structure& structure, std::span<const SystemSegm
     constexpr std::string_view reason = "as requested";
     for (const SystemSegment& segment : segments) {
         if (segment.name == grab && segments.size() > 1) {
-            return hold_all(segment, std::string(reason));
+            return hold_all(structure, segment, std::string(reason));
         }
         const bool is_here = grab.starts_with(segment.name + ":");
         for (std::vector<std::uint32_t>& residue : split_residues(structure, segment.atoms)) {
@@ -198,6 +213,39 @@ HandChoice choose_hand(const Structure& structure, std::span<const SystemSegment
                        std::string_view grab) {
     return grab.empty() ? choose_by_size(structure, segments)
                         : choose_by_name(structure, segments, grab);
+}
+
+std::string translated_words(const Structure& structure, const HandChoice& choice) {
+    return say(structure, choice, true);
+}
+
+std::string grab_of(const HandChoice& choice) {
+    return choice.atom.empty() ? choice.segment : choice.segment + ":" + choice.atom;
+}
+
+std::vector<HandChoice> list_hand_choices(const Structure& structure,
+                                          std::span<const SystemSegment> segments,
+                                          std::size_t most) {
+    std::vector<const SystemSegment*> molecules;
+    for (const SystemSegment& segment : segments)
+        if (segment.kind == SegmentKind::Molecule) molecules.push_back(&segment);
+    if (molecules.empty()) return {};
+    std::ranges::stable_sort(molecules, {},
+                             [](const SystemSegment* segment) { return segment->atoms.size(); });
+    std::vector<HandChoice> choices{choose_by_size(structure, segments)};
+    const auto add = [&](HandChoice choice) {
+        const std::string grab = grab_of(choice);
+        const bool is_known = std::ranges::count(choices, grab, grab_of) > 0;
+        if (!is_known && choices.size() < most) choices.push_back(std::move(choice));
+    };
+    for (const SystemSegment* const segment : molecules)
+        if (segments.size() > 1 && segment->atoms.size() <= most_in_hand)
+            add(hold_all(structure, *segment, "a molecule of its own"));
+    for (const SystemSegment* const segment : molecules) {
+        const bool has_residues = split_residues(structure, segment->atoms).size() > 1;
+        if (has_residues) add(hold_most_exposed(structure, *segment));
+    }
+    return choices;
 }
 
 HandChoice choose_residue(const Structure& structure, std::span<const SystemSegment> segments) {

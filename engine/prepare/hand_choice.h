@@ -4,6 +4,7 @@
 #include "molecule/atoms.h"
 #include "prepare/system_segments.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -28,6 +29,18 @@ struct HandChoice {
 // Throws LoadError where there is nothing of that name, or nothing to hold.
 HandChoice choose_hand(const Structure& structure, std::span<const SystemSegment> segments,
                        std::string_view grab);
+
+// Lists what a person may want to hold, at most `most` things: what choose_hand takes by itself
+// comes first, then other molecules of at most 2,000 atoms, the small ones before the large ones,
+// then the residue of each larger molecule that moves most easily. Empty where there is nothing to
+// hold.
+std::vector<HandChoice> list_hand_choices(const Structure& structure,
+                                          std::span<const SystemSegment> segments,
+                                          std::size_t most = 6);
+
+// The choice in the form that `grab` of choose_hand takes.
+std::string translated_words(const Structure& structure, const HandChoice& choice);
+std::string grab_of(const HandChoice& choice);
 
 // The residue of the largest molecule that moves most easily, by the same rule.
 HandChoice choose_residue(const Structure& structure, std::span<const SystemSegment> segments);

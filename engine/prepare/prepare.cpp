@@ -134,8 +134,10 @@ void build_missing(PreparedSystem& system, const std::vector<AtomCoordinate>& co
         if (is_hydrogen || placed.by != PlacedBy::Guess) continue;
         if (++guesses <= 5) guessed += fmt::format(" {},", atom_label(system, placed.atom));
     }
-    system.report.add("Atoms built", fmt::format("{} hydrogens, {} heavy atoms", hydrogens,
-                                                 built.placed.size() - hydrogens));
+    system.built_hydrogens = hydrogens;
+    system.built_heavy = built.placed.size() - hydrogens;
+    system.report.add("Atoms built", fmt::format("{} hydrogens, {} heavy atoms",
+                                                 system.built_hydrogens, system.built_heavy));
     if (guesses > 0) {
         guessed.pop_back();
         system.report.warn(

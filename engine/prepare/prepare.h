@@ -33,7 +33,8 @@ struct PreparedSystem {
     Report report;
     Solvent solvent = Solvent::None;  // solvent model of the charges and parameters
     std::vector<ApproximatePart> approximate;
-    std::size_t reduced_phosphates = 0;  // number of phosphates with a reduced charge
+    std::size_t reduced_phosphates = 0;                // number of phosphates with a reduced charge
+    std::size_t built_hydrogens = 0, built_heavy = 0;  // atoms that the file lacked
 };
 
 // The error for residues that the force field lacks, possibly with other problems.

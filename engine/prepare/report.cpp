@@ -33,6 +33,60 @@ std::string Report::to_text() const {
     return text;
 }
 
+std::string Report::to_plain_text() const {
+    Report plain;
+    for (const std::string& line : warnings_) plain.warn(without_options(line));
+    for (const auto& [heading, lines] : sections_)
+        for (const std::string& line : lines) plain.add(heading, without_options(line));
+    return plain.to_text();
+}
+
+namespace {
+
+// Finds an option of the command line, but no dashes within a file's name.
+std::size_t find_option(std::string_view text) {
+    for (std::size_t at = text.find("--"); at != text.npos; at = text.find("--", at + 2)) {
+        const bool begins = at == 0 || text[at - 1] == ' ' || text[at - 1] == '(';
+        if (begins && at + 2 < text.size() && text[at + 2] >= 'a' && text[at + 2] <= 'z') return at;
+    }
+    return text.npos;
+}
+
+}  // namespace
+
+std::string without_options(std::string_view text) {
+    // Brackets with an option go, or their last clause does where one stands before it.
+    std::string plain;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t open = text.find(" (", at);
+        const std::size_t close = open == text.npos ? open : text.find(')', open);
+        if (close == text.npos) {
+            plain += text.substr(at);
+            break;
+        }
+        const std::string_view inside = text.substr(open + 2, close - open - 2);
+        plain += text.substr(at, open - at);
+        std::size_t option = find_option(inside);
+        if (option == inside.npos) {
+            plain += text.substr(open, close + 1 - open);
+        } else if (const std::size_t clause = inside.rfind("; ", option); clause != inside.npos) {
+            plain += fmt::format(" ({})", inside.substr(0, clause));
+        }
+        at = close + 1;
+    }
+    // A clause with an option, up to the next one.
+    for (std::size_t option; (option = find_option(plain)) != plain.npos;) {
+        std::size_t begin = 0;
+        for (const std::string_view mark : {"; ", ": ", ", or ", ", "}) {
+            const std::size_t found = plain.rfind(mark, option);
+            if (found != plain.npos) begin = std::max(begin, found);
+        }
+        const std::size_t end = std::min(plain.find("; ", option), plain.size());
+        plain.erase(begin, end - begin);
+    }
+    return plain;
+}
+
 std::string join_some(const std::vector<std::string>& names, std::string_view separator) {
     const std::size_t shown = std::min<std::size_t>(names.size(), 5);
     std::string text = fmt::format(

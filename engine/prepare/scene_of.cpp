@@ -180,8 +180,11 @@ std::string format_scene(const Structure& structure, std::span<const SystemSegme
     scene += fmt::format("\n[hand]\nstroke = \"lead\"\npath = [{}]\n", format_path(way));
     scene += format_coupling(tuning);
     scene += format_view(structure.names.size(), hand);
-    scene += fmt::format("\n[run]\n{}period_ms = {}\nseconds = 10\n",
-                         format_note(tuning.period_note), tuning.period_ms);
+    scene += fmt::format("\n[run]\n{}period_ms = {}\n", format_note(tuning.period_note),
+                         tuning.period_ms);
+    if (!tuning.measured_on.empty())
+        scene += fmt::format("measured_on = {}\n", in_quotes(tuning.measured_on));
+    scene += "seconds = 10\n";
     return scene;
 }
 

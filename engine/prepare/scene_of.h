@@ -25,6 +25,7 @@ struct SceneTuning {
     std::optional<double> region_angstrom =
         {};  // region around what is held; unset: everything moves
     std::string coupling_note, period_note, region_note;  // comments, one line each
+    std::string measured_on;                              // as in scene files
 };
 
 struct SceneText {

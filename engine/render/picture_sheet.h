@@ -10,6 +10,8 @@
 
 namespace palpa {
 
+inline constexpr std::size_t most_sheet_pictures = 100;  // of 400 by 250 pixels
+
 class PictureSheet {
 public:
     // All of the same size, at most 4096 pixels either way together in rows of several. Throws

@@ -279,6 +279,8 @@ struct StartPin : PinEdit {
     TextPlace place;
 };
 
+inline constexpr std::string_view unmeasured = "nowhere";
+
 struct SceneDescription {
     std::filesystem::path file;
     std::string format;  // version that the file states (core/file_versions.h); empty: none
@@ -301,6 +303,9 @@ struct SceneDescription {
     std::vector<LessonStepDescription> lesson;  // in the order of the file
     std::vector<EditDescription> edits;         // in the order of the file
     double period_ms = 1;
+    // The machine on which period and gains were measured (core/machine.h); unmeasured: nowhere
+    // yet; empty: they are wanted as they are.
+    std::string measured_on;
     double seconds = 10;
     std::int64_t every = 1;
     std::int64_t seed = 1;

@@ -634,6 +634,11 @@ void visit_scene(FieldVisitor& v, SceneDescription& scene) {
          .lowest = 1,
          .highest = 1e4},
         scene.period_ms);
+    v.text({.key = "measured_on",
+            .meaning = "machine on which period and gains were measured: on another one the window "
+                       "measures the period again, where it says \"nowhere\" the gains too; unset: "
+                       "never"},
+           scene.measured_on);
     v.real({.key = "seconds", .meaning = "length of the run, s", .lowest = 1e-3, .highest = 1e5},
            scene.seconds);
     v.integer({.key = "every",

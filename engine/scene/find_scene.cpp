@@ -54,6 +54,11 @@ std::string first_sentence(const std::string& text) {
     return std::string(trimmed(sentence));
 }
 
+// Without the ending of a compressed file.
+fs::path without_gz(const fs::path& file) {
+    return upper_case(file.extension().string()) == ".GZ" ? file.stem() : file.filename();
+}
+
 // Nothing where it is no scene that can be read.
 std::optional<SceneEntry> read_entry(const fs::path& file, const std::string& name) {
     try {
@@ -201,22 +206,15 @@ std::vector<fs::path> own_scene_folders() {
 bool is_structure(const fs::path& file) {
     constexpr std::array<std::string_view, 6> endings{".PDB",   ".ENT", ".CIF",
                                                       ".MMCIF", ".CRD", ".COR"};
-    std::string ending = upper_case(file.extension().string());
-    if (ending == ".GZ") ending = upper_case(file.stem().extension().string());
+    const std::string ending = upper_case(without_gz(file).extension().string());
     return std::find(endings.begin(), endings.end(), ending) != endings.end();
 }
 
-fs::path name_of_structure(const fs::path& file) {
-    const fs::path name = file.stem();
-    return upper_case(file.extension().string()) == ".GZ" ? name.stem() : name;
-}
+fs::path name_of_structure(const fs::path& file) { return without_gz(file).stem(); }
 
 bool is_topology(const fs::path& file) { return upper_case(file.extension().string()) == ".PSF"; }
 
-bool is_journal(const fs::path& file) {
-    const bool is_packed = upper_case(file.extension().string()) == ".GZ";
-    return (is_packed ? file.stem() : file.filename()) == journal_name;
-}
+bool is_journal(const fs::path& file) { return without_gz(file) == journal_name; }
 
 bool can_be_opened(const fs::path& file) {
     return is_structure(file) || is_topology(file) || is_journal(file) ||

@@ -14,6 +14,13 @@ constexpr std::size_t ticks_between_ripples = 250;
 }  // namespace
 
 void Lesson::note_ripple(double hand_N) noexcept {
+    constexpr std::size_t let_go_ticks = 50;  // without any force
+    ticks_of_zero_ = hand_N == 0 ? ticks_of_zero_ + 1 : 0;
+    if (ticks_of_zero_ >= let_go_ticks) {
+        felt_N_.clear();
+        ripple_N_.reset();
+        return;
+    }
     if (felt_N_.size() >= 2 * ripple_ticks)
         felt_N_.erase(felt_N_.begin(), felt_N_.end() - static_cast<std::ptrdiff_t>(ripple_ticks));
     felt_N_.push_back(hand_N);

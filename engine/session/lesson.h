@@ -58,7 +58,8 @@ private:
     double held_s_ = 0, shown_s_ = 0;
     std::optional<double> value_, start_;
     std::optional<std::size_t> chosen_;
-    std::vector<double> felt_N_;  // forces since the step began, at most twice ripple_s
+    std::vector<double> felt_N_;     // forces since the step began, at most twice ripple_s
+    std::size_t ticks_of_zero_ = 0;  // the last ones
     std::optional<double> ripple_N_;
 };
 

@@ -55,7 +55,9 @@ void Speaker::fill(void* speaker, std::uint8_t* bytes, int size) noexcept {
                             static_cast<std::size_t>(size) / sizeof(float));
     own.samples_since_ = own.tones_.take() ? 0 : own.samples_since_ + samples.size();
     const bool is_stale = own.samples_since_ > stale_samples;
-    render_tone(is_stale ? Tone() : own.tones_.taken(), own.state_, samples);
+    Tone tone = own.tones_.taken();
+    if (is_stale) tone.amplitude = 0;
+    render_tone(tone, own.state_, samples);
     own.is_silent_ = own.state_.amplitude == 0 && own.state_.click_left == 0;
 }
 

@@ -62,7 +62,10 @@ void FileBrowser::open(std::string title, std::vector<std::string> endings,
     title_ = std::move(title);
     endings_ = std::move(endings);
     is_open_ = true;
+    ahead_.clear();
+    ImGui::GetIO().ClearInputCharacters();  // the letter that opened it
     go_to(folder_.empty() ? folder : folder_);
+    if (folder_.empty()) go_to(home_folder());  // the one of the last time is gone
 }
 
 void FileBrowser::close() {
@@ -121,6 +124,11 @@ std::optional<fs::path> FileBrowser::choose(const fs::path& path) {
     return std::nullopt;
 }
 
+// A relative path is one from the folder that is shown.
+fs::path FileBrowser::find_typed() const {
+    return typed_.starts_with("~/") ? home_folder() / typed_.substr(2) : folder_ / typed_;
+}
+
 void FileBrowser::draw_places() {
     if (ImGui::Button(labelled("Up").c_str())) go_to(folder_.parent_path());
     ImGui::SameLine();
@@ -143,6 +151,7 @@ void FileBrowser::follow_typing(bool types_path) {
     typed_at_s_ = ImGui::GetTime();
     for (const ImWchar letter : io.InputQueueCharacters)
         if (letter > ' ' && letter < 127) ahead_ += static_cast<char>(letter);
+    if (ahead_.empty()) return;
     const std::string wanted = in_small_letters(ahead_);
     const auto found = std::ranges::find_if(entries_, [&](const Entry& entry) {
         return in_small_letters(entry.name).starts_with(wanted);
@@ -171,6 +180,7 @@ std::optional<fs::path> FileBrowser::draw_entries() {
                 chosen_ = i;
                 if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) opened = entry.name;
             }
+            if (ImGui::IsItemClicked() || steps_ != 0 || moved_) typed_ = folder_.string();
             if (i == chosen_ && (steps_ != 0 || moved_)) ImGui::SetScrollHereY();
             if (entry.size.empty()) continue;
             ImGui::SameLine(ImGui::GetContentRegionMax().x -
@@ -201,19 +211,19 @@ std::optional<fs::path> FileBrowser::draw() {
     draw_places();
     std::optional<fs::path> wanted;
     if (type_text("##path", translated("a path"), typed_, ImGuiInputTextFlags_EnterReturnsTrue)) {
-        // A relative path is one from the folder that is shown.
-        wanted = typed_.starts_with("~/") ? home_folder() / typed_.substr(2) : folder_ / typed_;
+        wanted = find_typed();
         wants_enter_ = false;
     }
-    const bool types = ImGui::IsItemActive();
+    const bool types = ImGui::IsItemActive(), has_path = typed_ != folder_.string();
     follow_typing(types);
     if (std::optional<fs::path> opened = draw_entries()) wanted = folder_ / *opened;
-    const bool may_open = chosen_ < entries_.size();
+    const bool may_open = chosen_ < entries_.size() || has_path;
     ImGui::BeginDisabled(!may_open);
     const bool is_asked =
-        ImGui::Button(labelled("Open (Enter)").c_str()) || (wants_enter_ && !types);
+        ImGui::Button(labelled("Open (Enter)").c_str()) || (wants_enter_ && (!types || has_path));
     ImGui::EndDisabled();
-    if (is_asked && may_open && !wanted) wanted = folder_ / entries_[chosen_].name;
+    if (is_asked && may_open && !wanted)
+        wanted = has_path ? find_typed() : folder_ / entries_[chosen_].name;
     ImGui::SameLine();
     if (ImGui::Button(labelled("Cancel (Esc)").c_str())) is_open_ = false;
     if (!problem_.empty()) ImGui::TextWrapped("%s", problem_.c_str());

@@ -40,6 +40,7 @@ private:
 
     void go_to(const std::filesystem::path& folder);
     std::optional<std::filesystem::path> choose(const std::filesystem::path& path);
+    std::filesystem::path find_typed() const;
     void draw_places();
     void follow_typing(bool types_path);
     std::optional<std::filesystem::path> draw_entries();

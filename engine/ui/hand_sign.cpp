@@ -27,18 +27,30 @@ struct Bar {
     std::string text;
 };
 
-// Draws them one below the other, names at the left and values at the right, on one ground.
-void draw_bars(ImDrawList& list, const ImVec2& at, std::span<const Bar> bars) {
-    const float width = scaled(bar_width), height = scaled(bar_height), pad = scaled(sign_pad);
-    const float line = ImGui::GetFontSize() + 0.6F * pad;
-    float names = 0, texts = 0;
+struct BarLayout {
+    float names = 0, line = 0;  // width of the names, height of a line
+    ImVec2 size{};
+};
+
+BarLayout lay_out(std::span<const Bar> bars) {
+    const float pad = scaled(sign_pad);
+    BarLayout layout{.line = ImGui::GetFontSize() + 0.6F * pad};
+    float texts = 0;
     for (const Bar& bar : bars) {
-        names = std::max(names, ImGui::CalcTextSize(bar.name).x);
+        layout.names = std::max(layout.names, ImGui::CalcTextSize(bar.name).x);
         texts = std::max(texts, ImGui::CalcTextSize(bar.text.c_str()).x);
     }
-    const ImVec2 end{at.x + names + width + texts + 4 * pad,
-                     at.y + line * static_cast<float>(bars.size()) + pad};
-    list.AddRectFilled(at, end, colours().ground, pad);
+    layout.size = {layout.names + scaled(bar_width) + texts + 4 * pad,
+                   layout.line * static_cast<float>(bars.size()) + pad};
+    return layout;
+}
+
+// Draws them one below the other, names at the left and values at the right, on one ground.
+void draw_bars(ImDrawList& list, const ImVec2& at, std::span<const Bar> bars,
+               const BarLayout& layout) {
+    const float width = scaled(bar_width), height = scaled(bar_height), pad = scaled(sign_pad);
+    const float names = layout.names, line = layout.line;
+    list.AddRectFilled(at, {at.x + layout.size.x, at.y + layout.size.y}, colours().ground, pad);
     ImVec2 corner{at.x + pad, at.y + 0.5F * pad};
     for (const Bar& bar : bars) {
         const double share = bar.most > 0 ? std::clamp(bar.value / bar.most, 0.0, 1.0) : 0;
@@ -62,18 +74,19 @@ void draw_hand_sign(const HandSign& sign, const FrameCamera& camera, const Scree
         project(camera, sign.place, static_cast<std::uint32_t>(std::max(screen.x, 1.0F)),
                 static_cast<std::uint32_t>(std::max(screen.y, 1.0F)));
     if (!(seen.z > camera.near) || area.width() <= 0) return;
-    const float width = scaled(bar_width), edge = panel_edge();
-    const float right = std::max(area.left + edge, area.right - edge - 3 * width);
-    const float bottom = std::max(area.top + edge, area.bottom - edge - 6 * ImGui::GetFontSize());
-    const ImVec2 at{std::clamp(seen.x - 1.2F * width, area.left + edge, right),
-                    std::clamp(seen.y - scaled(above), area.top + edge, bottom)};
     std::string felt = fmt::format("{:.2f} N", sign.newton);
     if (!sign.reason.empty()) felt += ", " + sign.reason;
     const std::array bars{Bar{translated("molecule"), sign.molecule_nN, sign.most_nN, arrow_colour,
                               fmt::format("{:.2f} nN", sign.molecule_nN)},
                           Bar{translated("your hand"), sign.newton, sign.most_newton,
                               colours().hand, std::move(felt)}};
-    draw_bars(*ImGui::GetBackgroundDrawList(), at, bars);
+    const BarLayout layout = lay_out(bars);
+    const float edge = panel_edge();
+    const float right = std::max(area.left + edge, area.right - edge - layout.size.x);
+    const float bottom = std::max(area.top + edge, area.bottom - edge - layout.size.y);
+    const ImVec2 at{std::clamp(seen.x - 1.2F * scaled(bar_width), area.left + edge, right),
+                    std::clamp(seen.y - scaled(above), area.top + edge, bottom)};
+    draw_bars(*ImGui::GetBackgroundDrawList(), at, bars, layout);
 }
 
 }  // namespace palpa

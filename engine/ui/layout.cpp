@@ -1,8 +1,10 @@
 #include "ui/layout.h"
 
+#include "core/text.h"
 #include "core/translate.h"
 
 #include <imgui_internal.h>
+#include <utility>
 
 namespace palpa {
 
@@ -26,6 +28,25 @@ void tip(const char* text) {
 
 std::string labelled(const char* english) {
     return std::string(translated(english)) + "###" + english;
+}
+
+void write_wrapped(std::string_view text) {
+    const float width = ImGui::GetContentRegionAvail().x;
+    std::string lines;
+    for (const std::string_view paragraph : split_lines(text)) {
+        std::string line;
+        for (const std::string_view word : split_words(paragraph)) {
+            std::string longer = line.empty() ? std::string(word) : line + ' ' + std::string(word);
+            if (!line.empty() && ImGui::CalcTextSize(longer.c_str()).x > width) {
+                lines += line + '\n';
+                longer = word;
+            }
+            line = std::move(longer);
+        }
+        lines += line + '\n';
+    }
+    if (!lines.empty()) lines.pop_back();
+    ImGui::TextUnformatted(lines.c_str());
 }
 
 void same_line_if_it_fits(const char* text) {

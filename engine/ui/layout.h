@@ -2,6 +2,7 @@
 #pragma once
 #include <imgui.h>
 #include <string>
+#include <string_view>
 
 namespace palpa {
 
@@ -33,6 +34,10 @@ void tip(const char* text);
 // The text of a button or the title of a panel in the window's language. Its ID, and the name for
 // ImGui::FindWindowByName, are the same in all languages.
 std::string labelled(const char* english);
+
+// Writes a text that may be wider than the window on several lines, which break at spaces alone:
+// "0.5 nN" stays a number.
+void write_wrapped(std::string_view text);
 
 // Continues on the line of the previous item if a button with this text fits there.
 void same_line_if_it_fits(const char* text);

@@ -83,7 +83,7 @@ LessonGoal describe_goal(const LessonStepDescription& step, double value, double
 std::optional<std::size_t> draw_lesson_question(const LessonQuestion& question,
                                                 std::optional<std::size_t> chosen) {
     std::optional<std::size_t> pressed;
-    ImGui::TextWrapped("%s", question.text.c_str());
+    write_wrapped(question.text);
     for (std::size_t i = 0; i < question.answers.size(); ++i) {
         const std::string text = fmt::format("{}  {}", letter_of(i), question.answers[i]);
         const ImVec2 pad{scaled(6), scaled(3)};
@@ -102,14 +102,17 @@ std::optional<std::size_t> draw_lesson_question(const LessonQuestion& question,
         ImGui::PopTextWrapPos();
         ImGui::SetCursorPos(after);
     }
-    if (!chosen || *chosen >= question.why.size()) return pressed;
-    const bool is_right = *chosen + 1 == static_cast<std::size_t>(question.right);
-    ImGui::PushStyleColor(ImGuiCol_Text, is_right ? colours().done : colours().wrong);
-    ImGui::TextWrapped("%s: %s %s", letter_of(*chosen).c_str(),
-                       is_right ? translated("Right.") : translated("Not correct."),
-                       question.why[*chosen].c_str());
-    ImGui::PopStyleColor();
     return pressed;
+}
+
+void write_explanation(const LessonQuestion& question, std::size_t answer) {
+    if (answer >= question.why.size()) return;
+    const bool is_right = answer + 1 == static_cast<std::size_t>(question.right);
+    ImGui::PushStyleColor(ImGuiCol_Text, is_right ? colours().done : colours().wrong);
+    write_wrapped(fmt::format("{}: {} {}", letter_of(answer),
+                              is_right ? translated("Right.") : translated("Not correct."),
+                              question.why[answer]));
+    ImGui::PopStyleColor();
 }
 
 void draw_lesson_map(const LessonMeasures& measures) {
@@ -143,7 +146,12 @@ void LessonCurve::add(const Reading& reading, const Vec3& place_angstrom,
                       std::uint32_t grip_number) {
     constexpr double least_way = 0.05;  // Å
     constexpr std::size_t most = 4000;
-    if (nN_.size() >= most || (start_ && grip_number != grip_number_)) clear();
+    if (start_ && grip_number != grip_number_) clear();
+    if (nN_.size() >= most) {
+        distance_angstrom_.clear();
+        way_angstrom_.clear();
+        nN_.clear();
+    }
     const bool is_first = !start_;
     if (is_first) start_ = place_angstrom;
     grip_number_ = grip_number;

@@ -22,10 +22,12 @@ struct LessonGoal {
 // `start`: the value as the step began.
 LessonGoal describe_goal(const LessonStepDescription& step, double value, double start);
 
-// Draws the question, its answers as rows to click on, each with its letter, and below them the
-// explanation of the chosen one; returns the pressed one.
+// Draws the question and its answers as rows to click on, each with its letter; returns the pressed
+// one.
 std::optional<std::size_t> draw_lesson_question(const LessonQuestion& question,
                                                 std::optional<std::size_t> chosen);
+// Explains an answer.
+void write_explanation(const LessonQuestion& question, std::size_t answer);
 
 // The map of two dihedrals: visited cells and the present point.
 void draw_lesson_map(const LessonMeasures& measures);

@@ -309,6 +309,8 @@ void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, t
 
 bool Window::should_close() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
 
+void Window::close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }
+
 void Window::keep_open() { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
 
 float Window::content_scale() const {

@@ -161,6 +161,7 @@ public:
     void set_title(const std::string& title);
 
     bool should_close() const;
+    void close();  // as if the person did
     // Cancels a request to close the window.
     void keep_open();
 

@@ -11,6 +11,7 @@
 #include "tests/support/window_screen.h"
 #include "view/build_frame.h"
 
+#include <imgui_internal.h>
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <string>
@@ -27,6 +28,31 @@ void go_to_question(WindowScreen& screen) {
     Lesson& lesson = lesson_of(screen);
     while (!lesson.steps()[lesson.current()].question) lesson.skip();
     screen.frames(3);
+}
+
+// Gives the step its goal for so long that it is done, and has its longest text.
+void reach_goal(Lesson& lesson) {
+    const LessonStepDescription& step = lesson.steps()[lesson.current()];
+    const double least = step.at_least.value_or(step.at_most.value_or(0));
+    const double most = step.at_most.value_or(least), value = (least + most) / 2;
+    Reading reading;
+    reading.distance_angstrom = reading.molecular_nN = reading.hand_N = value;
+    const std::vector<double> measured(lesson.steps().size(), value);
+    const auto mode = step.quantity == LessonQuantity::Mode
+                          ? static_cast<CouplingMode>(static_cast<int>(value) - 1)
+                          : CouplingMode::Guarded;
+    for (int i = 0; i < 2100; ++i) lesson.update(reading, mode, measured);
+}
+
+// How far a part of the panel can be scrolled, pixels.
+float scroll_of(const std::string& part) {
+    float most = 0;
+    for (const ImGuiWindow* const window : ImGui::GetCurrentContext()->Windows) {
+        const std::string name = window->Name;
+        if (window->WasActive && name.find('/' + part + '_') != std::string::npos)
+            most = std::max(most, window->ScrollMax.y);
+    }
+    return most;
 }
 
 // Presses a key as the window does: panels first, then actions.
@@ -84,6 +110,51 @@ TEST_CASE("answers take their letters, and nothing else does", "[app][lesson]") 
           screen.options.view.representation);
 }
 
+TEST_CASE("a step that is done can be passed over, and the lesson counts as done",
+          "[app][lesson]") {
+    WindowScreen screen;
+    std::vector<bool> noted;
+    screen.options.lesson.remember_done = [&](bool is_done) { noted.push_back(is_done); };
+    screen.frames(3);
+    Lesson& lesson = lesson_of(screen);
+    for (; !lesson.is_done(); perform(screen.app, "skip-step")) {
+        if (const auto& question = lesson.steps()[lesson.current()].question)
+            lesson.answer(static_cast<std::size_t>(question->right) - 1);
+        else
+            reach_goal(lesson);
+        REQUIRE(lesson.is_step_done());
+    }
+    follow_lesson(screen.app);
+    CHECK(noted == std::vector<bool>{true});
+}
+
+TEST_CASE("a step that is passed over before it is done leaves the lesson without its mark",
+          "[app][lesson]") {
+    WindowScreen screen;
+    std::vector<bool> noted;
+    screen.options.lesson.remember_done = [&](bool is_done) { noted.push_back(is_done); };
+    screen.frames(3);
+    while (!lesson_of(screen).is_done()) perform(screen.app, "skip-step");
+    follow_lesson(screen.app);
+    CHECK(noted.empty());
+}
+
+TEST_CASE("Enter goes on in a lesson only where the lesson is seen", "[app][lesson]") {
+    WindowScreen screen;
+    screen.frames(3);
+    Lesson& lesson = lesson_of(screen);
+    for (int i = 0; i < 2; ++i) reach_goal(lesson);  // 4.2 s
+    REQUIRE(lesson.can_go_on());
+    press(screen, Key::Tab);  // panels away
+    screen.frames(3);
+    press(screen, Key::Enter);
+    CHECK(lesson.current() == 0);
+    press(screen, Key::Tab);
+    screen.frames(3);
+    press(screen, Key::Enter);
+    CHECK(lesson.current() == 1);
+}
+
 TEST_CASE("what is said of an answer moves no answer under the mouse", "[app][lesson]") {
     WindowScreen screen;
     ImGui::GetIO().DisplaySize = {1280, 800};
@@ -112,6 +183,29 @@ TEST_CASE("what is said of an answer moves no answer under the mouse", "[app][le
     }
     for (const std::size_t answer : {0U, 1U, 2U})
         CHECK(std::ranges::count(first, std::optional<std::size_t>(answer)) > 0);
+}
+
+TEST_CASE("no step of a lesson has to be scrolled to be read", "[app][lesson]") {
+    for (const SceneEntry& entry : list_lessons()) {
+        WindowScreen screen(read_scene(entry.file));
+        for (const ImVec2 size : {ImVec2(1280, 800), ImVec2(1366, 768)}) {
+            ImGui::GetIO().DisplaySize = size;
+            Lesson& lesson = lesson_of(screen);
+            for (lesson.restart(); !lesson.is_done(); lesson.skip()) {
+                const LessonStepDescription& step = lesson.steps()[lesson.current()];
+                const std::size_t answers = step.question ? step.question->answers.size() : 0;
+                for (std::size_t answer = 0; answer <= answers; ++answer) {
+                    INFO(entry.name << ", step " << step.name << ", " << size.x << " x " << size.y
+                                    << ", answer " << answer);
+                    if (answer > 0) lesson.answer(answer - 1);
+                    reach_goal(lesson);
+                    screen.frames(3);
+                    for (const char* const part : {"text ", "beside "})
+                        CHECK(scroll_of(part + std::to_string(lesson.current())) == 0);
+                }
+            }
+        }
+    }
 }
 
 TEST_CASE("what a step of a lesson names is in the picture, and no panel covers it",

@@ -124,6 +124,7 @@ class LessonWindow(WindowCase):
         (width, height), pixels = read_png(path)
         self.assertEqual((width, height), (1920, 1080))
         ground = pixels[:4]
+        self.assertEqual(bytes(ground), b"\xff\xff\xff\xff")  # as palpa render has it
         for x, y in ((5, 500), (1900, 500), (960, 5), (960, 1070), (1900, 1070), (30, 30)):
             at = 4 * (width * y + x)
             self.assertEqual(pixels[at:at + 4], ground)

@@ -2,7 +2,9 @@
 #include "app/actions.h"
 #include "app/inspected.h"
 #include "app/lesson_course.h"
+#include "app/marks.h"
 #include "app/recorder.h"
+#include "app/selecting.h"
 #include "tests/support/in_language.h"
 #include "tests/support/skip.h"
 #include "tests/support/window_screen.h"
@@ -12,6 +14,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <limits>
+#include <memory>
 #include <set>
 #include <string>
 #include <tuple>
@@ -289,6 +292,31 @@ TEST_CASE("Esc goes back one level and never quits", "[app][panels]") {
     perform(screen.app, "back");
     CHECK_FALSE(screen.app.resource<FrameLoop>().is_quitting);
     CHECK_FALSE(screen.app.resource<Dialogs>().question);
+}
+
+TEST_CASE("Esc ends measuring before anything else", "[app][panels]") {
+    WindowScreen screen;
+    screen.frame();
+    open_panel(screen.app, "keys");
+    perform(screen.app, "measure");
+    REQUIRE(measures(screen.app));
+    perform(screen.app, "back");
+    CHECK_FALSE(measures(screen.app));
+    CHECK(is_panel_open(screen.app, "keys"));
+}
+
+TEST_CASE("atoms that were clicked on for a measure are forgotten where atoms get other numbers",
+          "[app][panels]") {
+    WindowScreen screen;
+    screen.frame();
+    perform(screen.app, "measure");
+    select_anew(screen.app);
+    measure_atom(screen.app, 0);
+    screen.app.write<NewestFrame>().frame.atoms =
+        std::make_shared<const AtomDirectory>(*frame_of(screen.app).atoms);
+    select_anew(screen.app);
+    CHECK(screen.app.resource<Measuring>().is_on);
+    CHECK(screen.app.resource<Measuring>().atoms.empty());
 }
 
 TEST_CASE("a question is answered before anything behind it can be changed", "[app][panels]") {

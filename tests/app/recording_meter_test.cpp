@@ -31,6 +31,29 @@ TEST_CASE("a recording is as large as all its files, and grows at the rate since
     CHECK(later->bytes_per_s == 500'000);
 }
 
+TEST_CASE("the rate of a recording is that of the last 10 to 20 s", "[app][recording]") {
+    const test::TemporaryFolder folder;
+    const auto size = [&](std::size_t bytes) {
+        (void)folder.add_file("trace.csv", std::string(bytes, 't'));
+    };
+    size(0);
+    RecordingMeter meter;
+    const auto measure_at = [&](double recorded_s) {
+        std::optional<RecordingState> state;
+        while (!state) state = meter.measure(folder.path(), recorded_s);
+        return state->bytes_per_s;
+    };
+    CHECK(measure_at(0) == 0);
+    size(1'000'000);
+    CHECK(measure_at(10.5) == Approx(1e6 / 10.5));
+    size(1'300'000);  // slower from here on
+    CHECK(measure_at(13.5) == Approx(1.3e6 / 13.5));
+    size(2'100'000);
+    CHECK(measure_at(21.5) == Approx(2.1e6 / 21.5));
+    size(2'200'000);
+    CHECK(measure_at(22.5) == Approx(1.2e6 / 12));
+}
+
 TEST_CASE("the free space on the disk lasts for its size divided by the rate", "[app][recording]") {
     RecordingState state{.recorded_s = 1, .bytes = 1, .free_bytes = 600'000'000};
     CHECK_FALSE(seconds_left(state));

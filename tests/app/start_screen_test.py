@@ -63,6 +63,11 @@ class StartScreen(WindowCase):
         return sum(pixels[i + 1] > pixels[i] + 40 and pixels[i + 1] > pixels[i + 2] + 20
                    for i in range(0, 4 * width * height, 4))
 
+    def has_chosen_card(self, picture):
+        """Its edge is three pixels wide."""
+        (width, height), pixels = read_png(picture)
+        return sum(pixels[i:i + 3] == b"\x3c\x78\xd2" for i in range(0, 4 * width * height, 4)) > 500
+
     def test_a_scene_is_chosen_by_keys_and_left_for_the_start_screen(self):
         with Display() as display:
             self.start(display)
@@ -132,6 +137,58 @@ class StartScreen(WindowCase):
         played = subprocess.run([PROGRAM, "replay", recording, "--verify"], capture_output=True,
                                 text=True)
         self.assertEqual(played.returncode, 0, played.stdout + played.stderr)
+
+    def test_what_to_hold_is_chosen_while_the_structure_turns(self):
+        structure = self.folder / "bridge.pdb"
+        exported = subprocess.run([PROGRAM, "export", ROOT / "scenes" / "salt-bridge" / "vacuum.toml", "-o",
+                                   structure], capture_output=True, text=True)
+        self.assertEqual(exported.returncode, 0, exported.stderr)
+        prepared = self.folder / "data" / "palpa" / "scenes" / "bridge"
+        with Display() as display:
+            self.start(display)
+            display.drop(self.wait_for(display, "Palpa"), structure)
+            # Something green is in the picture: what the hand would hold.
+            self.wait_until(lambda: self.count_greens(self.screenshot(display)) > 300, "the question")
+            first = read_png(self.screenshot(display))
+            self.wait_until(lambda: read_png(self.screenshot(display)) != first, "a picture that turns")
+            display.do("key", "Down")
+            self.screenshot(display)
+            display.do("key", "Return")
+            self.wait_until((prepared / "scene.toml").exists, "the prepared scene")
+            self.screenshot(display)  # of three lines
+            display.do("key", "d")
+            self.screenshot(display)  # and of the details
+            display.do("key", "Return")
+            self.wait_for(display, "Palpa - bridge")
+            self.screenshot(display)
+            self.end(display)
+        text = (prepared / "scene.toml").read_text()
+        self.assertIn('measured_on = "nowhere"', text)
+
+    def test_structures_dropped_together_become_a_scene_each(self):
+        structures = [self.folder / name for name in ("alpha.pdb", "omega.pdb", "broken.pdb")]
+        for structure in structures[:2]:
+            exported = subprocess.run([PROGRAM, "export", ROOT / "scenes" / "salt-bridge" / "vacuum.toml", "-o",
+                                       structure], capture_output=True, text=True)
+            self.assertEqual(exported.returncode, 0, exported.stderr)
+        structures[2].write_text("ATOM  nothing that can be read\n")
+        prepared = self.folder / "data" / "palpa" / "scenes"
+        with Display() as display:
+            self.start(display)
+            display.drop(self.wait_for(display, "Palpa"), *structures)
+            for name in ("alpha", "omega"):
+                self.wait_until((prepared / name / "scene.toml").exists, name)
+            self.wait_until(lambda: self.has_chosen_card(self.screenshot(display)), "the start screen")
+            # Enter opens what the search finds, the first scene of one's own.
+            display.do("key", "ctrl+f")
+            for _ in range(2):  # the field has the keys in the next frame
+                self.screenshot(display)
+            display.do("type", "omega")
+            self.screenshot(display)
+            display.do("key", "Return")
+            self.wait_for(display, "Palpa - omega")
+            self.end(display)
+        self.assertFalse((prepared / "broken").exists())
 
     def test_what_was_added_is_in_the_scene_that_is_saved(self):
         scene = self.folder / "water"

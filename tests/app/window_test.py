@@ -56,8 +56,8 @@ class Display:
                                env={**os.environ, "DISPLAY": self.name}).stdout.split()
         return tuple(int(word.split(":")[1]) for word in words[:2])
 
-    def drop(self, window, file):
-        DragSource(self.name, int(window), file).drop()
+    def drop(self, window, *files):
+        DragSource(self.name, int(window), files).drop()
 
     def find_window(self):
         return subprocess.run(["xdotool", "search", "--onlyvisible", "--name", "^Palpa - "],
@@ -111,9 +111,9 @@ class Event(ctypes.Union):
 
 
 class DragSource:
-    """Drops a file on a window as file managers do (XDND)."""
+    """Drops files on a window as file managers do (XDND)."""
 
-    def __init__(self, display, target, file):
+    def __init__(self, display, target, files):
         self.x11 = x11 = ctypes.CDLL("libX11.so.6")
         for function, result in ((x11.XOpenDisplay, ctypes.c_void_p),
                                  (x11.XDefaultRootWindow, ctypes.c_ulong),
@@ -122,7 +122,7 @@ class DragSource:
             function.restype = result
         self.display = ctypes.c_void_p(x11.XOpenDisplay(display.encode()))
         self.target = target
-        self.data = (file.as_uri() + "\r\n").encode()
+        self.data = "".join(file.as_uri() + "\r\n" for file in files).encode()
         root = ctypes.c_ulong(x11.XDefaultRootWindow(self.display))
         zero = ctypes.c_ulong(0)
         self.window = x11.XCreateSimpleWindow(self.display, root, 0, 0, 1, 1, 0, zero, zero)

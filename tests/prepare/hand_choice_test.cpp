@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,31 @@ TEST_CASE("a small molecule beside a larger one is held whole", "[prepare][hand]
     CHECK(hand.segment == "L");
     CHECK(hand.atom.empty());
     CHECK(hand.held == std::vector<std::uint32_t>{20, 21, 22, 23});
+}
+
+TEST_CASE("the choice, other molecules and residues are offered, each once", "[prepare][hand]") {
+    StructureWriter writer;
+    add_chain(writer, "A", 5);
+    add_chain(writer, "B", 3);
+    for (int i = 0; i < 4; ++i) {
+        writer.atom("LIG", "L", 1, "C" + std::to_string(i), {9.0 + i, 5, 0}, "C");
+    }
+    writer.atom("SOD", "I", 1, "SOD", {30, 0, 0}, "NA");
+    const std::vector<SystemSegment> segments = segments_of(writer.structure());
+    std::vector<std::string> grabs;
+    for (const HandChoice& choice : list_hand_choices(writer.structure(), segments)) {
+        grabs.push_back(grab_of(choice));
+        // Each can be asked for.
+        CHECK(choose_hand(writer.structure(), segments, grabs.back()).held == choice.held);
+    }
+    REQUIRE(grabs.size() == 5);
+    CHECK(grabs[0] == "L");
+    CHECK(grabs[1] == "B");
+    CHECK(grabs[2] == "A");
+    CHECK(grabs[3].starts_with("B:"));
+    CHECK(grabs[4].starts_with("A:"));
+    CHECK(list_hand_choices(writer.structure(), segments, 2).size() == 2);
+    CHECK(list_hand_choices(writer.structure(), std::span(segments).last(1)).empty());
 }
 
 TEST_CASE("of one chain the most exposed residue is held", "[prepare][hand]") {

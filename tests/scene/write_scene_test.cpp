@@ -165,6 +165,7 @@ TEST_CASE("what a step of a lesson asks, shows and does is written and read agai
     SceneDescription scene = water();
     scene.lesson_goal = "know";
     scene.lesson_learned = "I know.";
+    scene.measured_on = "a machine";
     scene.minutes = 1.0 / 3 + 1;
     scene.level = SceneLevel::Student;
     scene.lesson = {{"one", "text", "task", LessonQuantity::HydrogenBonds, 1.0, {}, 0},
@@ -182,6 +183,7 @@ TEST_CASE("what a step of a lesson asks, shows and does is written and read agai
     CHECK(formatted(back) == formatted(scene));
     CHECK(back.lesson_goal == "know");
     CHECK(back.lesson_learned == "I know.");
+    CHECK(back.measured_on == "a machine");
     CHECK(back.minutes == scene.minutes);
     CHECK(back.level == scene.level);
     REQUIRE(back.lesson.size() == 2);

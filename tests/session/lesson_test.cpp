@@ -164,6 +164,23 @@ TEST_CASE("a ripple is of the last two seconds of the force on the hand", "[sess
     CHECK(lesson.is_step_done());
 }
 
+TEST_CASE("a hand that has let go has no ripple", "[session][lesson]") {
+    Lesson lesson({step_of(LessonQuantity::Ripple, {}, 0.03)});
+    Reading reading;
+    for (int tick = 0; tick < 2500; ++tick) {
+        reading.hand_N = 0.2 * std::sin(2 * 3.14159265 * 20 * tick * 1e-3);
+        lesson.update(reading, mode_2);
+    }
+    REQUIRE(lesson.value());
+    reading.hand_N = 0;
+    for (int tick = 0; tick < 5000; ++tick) lesson.update(reading, mode_2);
+    CHECK_FALSE(lesson.value());
+    CHECK_FALSE(lesson.is_step_done());
+    reading.hand_N = 0.5;  // taken again, and held still
+    for (int tick = 0; tick < 2500; ++tick) lesson.update(reading, mode_2);
+    CHECK(lesson.is_step_done());
+}
+
 TEST_CASE("on one axis what drives apart is positive, in three dimensions a force is a norm",
           "[session][lesson]") {
     ServoTick tick;

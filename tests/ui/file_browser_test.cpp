@@ -72,3 +72,26 @@ TEST_CASE("letters go to the first name that begins with them, and Enter opens i
     CHECK_FALSE(browser.is_open());
     CHECK(std::filesystem::equivalent(browser.folder(), folder.path()));
 }
+
+TEST_CASE("the letter that opened the dialog is not looked for", "[ui]") {
+    const test::TemporaryFolder folder;
+    for (const char* const name : {"1abc.pdb", "other.pdb"})
+        std::ofstream(folder.path() / name) << "x";
+    Screen screen;
+    FileBrowser browser;
+    ImGui::GetIO().AddInputCharactersUTF8("o");  // the key O, which also writes
+    browser.open("Open", {".pdb"}, folder.path());
+    (void)screen.draw(browser);
+    CHECK(browser.chosen() == "1abc.pdb");
+    screen.type(browser, "o");
+    CHECK(browser.chosen() == "other.pdb");
+}
+
+TEST_CASE("instead of a folder that is gone the dialog shows one that is there", "[ui]") {
+    const test::TemporaryFolder folder;
+    Screen screen;
+    FileBrowser browser;
+    browser.open("Open", {".pdb"}, folder.path() / "gone");
+    (void)screen.draw(browser);
+    CHECK(std::filesystem::is_directory(browser.folder()));
+}

@@ -53,8 +53,9 @@ SoundChoice build_sound_choice(const RunOptions& options, PreferencesFile& prefe
 std::vector<SceneEntry> list_own_lessons() {
     std::vector<SceneEntry> lessons;
     for (const fs::path& folder : own_scene_folders())
-        std::ranges::copy_if(list_scenes(folder), std::back_inserter(lessons),
-                             &SceneEntry::has_lesson);
+        std::ranges::copy_if(
+            list_scenes(folder), std::back_inserter(lessons),
+            [](const SceneEntry& scene) { return scene.has_lesson && !scene.is_to_be_made; });
     return order_scenes(std::move(lessons));
 }
 
@@ -334,7 +335,9 @@ std::optional<NextScreen> show_recording(WindowShell& shell, PreferencesFile& pr
         fmt::print("{}: played {:.2f} of {:.2f} s\n  {}\n", folder.string(), report.replay->at_s,
                    report.replay->length_s, report.replay->verdict);
     }
-    return report.next;
+    std::optional<NextScreen> next = report.next;
+    if (next) next->left = find_plain_or_packed(folder / journal_name);
+    return next;
 }
 
 RunOptions with_files_folder(RunOptions options) {

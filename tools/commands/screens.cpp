@@ -13,6 +13,7 @@
 #include "devices/open_device.h"
 #include "experiments/emulated_hand.h"
 #include "loading/load.h"
+#include "prepare/report.h"
 #include "scene/find_scene.h"
 #include "scene/read_scene.h"
 #include "session/recording.h"
@@ -86,7 +87,7 @@ std::vector<SceneEntry> list_yours(std::span<const SceneEntry> recent, const fs:
 
 // `before`: the scene that was left; empty: there was none.
 StartOptions build_start(PreferencesFile& preferences, const RunOptions& options,
-                         std::string problem, const fs::path& before) {
+                         const NextScreen& wanted, const fs::path& before) {
     const DeviceRequest request;
     const Preferences& now = preferences.now();
     StartOptions start{
@@ -96,7 +97,8 @@ StartOptions build_start(PreferencesFile& preferences, const RunOptions& options
             [&preferences](const std::string& name) { return choose_device(name, preferences); },
         .folder = now.folder.value_or(""),
         .remember_folder = remember<&Preferences::folder>(preferences),
-        .problem = std::move(problem),
+        .problem = wanted.problem,
+        .said = wanted.said,
         .sound = {.is_on = now.sound.value_or(false),
                   .remember = remember<&Preferences::sound>(preferences)},
         .asks_for_sound = !now.sound && preferences.can_keep()};
@@ -113,15 +115,18 @@ StartOptions build_start(PreferencesFile& preferences, const RunOptions& options
     return start;
 }
 
+void refuse_scene_among(const std::vector<fs::path>& files) {
+    for (const fs::path& file : files) {
+        if (files.size() > 1 && file.extension() == ".toml")
+            throw LoadError({file.string()}, "is a scene; expected it alone, without other files");
+    }
+}
+
 // Nothing where the person changed their mind.
 std::optional<fs::path> find_scene_of(WindowShell& shell, const std::vector<fs::path>& files,
                                       const RunOptions& options, const std::string& said) {
     if (files.size() == 1 && !is_structure(files[0]) && !is_topology(files[0]))
         return find_scene_file(files[0]);
-    for (const fs::path& file : files) {
-        if (file.extension() == ".toml")
-            throw LoadError({file.string()}, "is a scene; expected it alone, without other files");
-    }
     return open_structure(shell, files, prepared_folder(options), said);
 }
 
@@ -140,6 +145,11 @@ std::optional<NextScreen> show_files(std::optional<WindowShell>& shell,
                                      const std::string& said = {}) {
     if (const std::optional<fs::path> folder = find_recording(files))
         return show_recording(*shell, preferences, *folder, options);
+    refuse_scene_among(files);
+    if (const auto groups = split_structures(files); groups.size() > 1) {
+        PreparedEach each = prepare_each(*shell, groups, prepared_folder(options));
+        return NextScreen{.said = std::move(each.said), .problem = std::move(each.problem)};
+    }
     const std::optional<fs::path> file = find_scene_of(*shell, files, options, said);
     if (!file) return NextScreen{};
     options.scene = *file;
@@ -176,21 +186,19 @@ void follow_screens(std::optional<WindowShell>& shell, PreferencesFile& preferen
                     const RunOptions& options, std::optional<NextScreen> next) {
     RunOptions later = options_of_later(options);
     const std::optional<std::string> device = preferences.now().device;
-    std::string problem;
+    fs::path left;  // the scene that was shown last
     while (next) {
+        if (!next->left.empty()) left = next->left;
         // What a person chose in the window counts more than the command line.
         if (preferences.now().device != device) later.device.reset();
         if (next->is_start()) {
-            next = show_start_screen(
-                *shell, build_start(preferences, later, std::move(problem), next->left));
-            problem.clear();
+            next = show_start_screen(*shell, build_start(preferences, later, *next, left));
             continue;
         }
         try {
             next = show_named(shell, preferences, *next, later);
         } catch (const LoadError& error) {
-            problem = error.what();
-            next.emplace();
+            next = NextScreen{.problem = without_options(error.what())};
         }
     }
 }

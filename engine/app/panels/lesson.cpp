@@ -1,4 +1,5 @@
-// The panel "Lesson": the present step at the left, its question or its plot at the right.
+// The panel "Lesson": the present step at the left, and what is said of an answer; its question or
+// its plot at the right.
 #include "app/lesson_course.h"
 #include "app/panels.h"
 #include "app/window_world.h"
@@ -16,7 +17,8 @@
 namespace palpa {
 namespace {
 
-constexpr float text_share = 0.46F;  // of the width, where something is drawn beside the text
+// The text's share of the width beside a question, a plot, a map.
+constexpr float beside_question = 0.46F, beside_plot = 0.54F, beside_map = 0.6F;
 
 void draw_action(World& app, const char* id, const char* text, bool is_next) {
     if (is_next)
@@ -30,9 +32,9 @@ void draw_buttons(World& app) {
     const Lesson& lesson = app.resource<LessonState>().lesson;
     const bool is_last = lesson.current() + 1 == lesson.steps().size();
     const bool can_go_on = lesson.can_go_on();
-    const char* const goes_on = !can_go_on ? for_translation("Skip")
-                                : is_last  ? for_translation("Finish (Enter)")
-                                           : for_translation("Next (Enter)");
+    const char* const goes_on = !lesson.is_step_done() ? for_translation("Skip")
+                                : is_last              ? for_translation("Finish (Enter)")
+                                                       : for_translation("Next (Enter)");
     const char* const restarts = for_translation("From the start");
     const ImGuiStyle& style = ImGui::GetStyle();
     const auto width_of = [&](const char* text) {
@@ -42,7 +44,9 @@ void draw_buttons(World& app) {
     ImGui::SameLine(std::max(0.0F, ImGui::GetWindowContentRegionMax().x - width));
     draw_action(app, "restart-lesson", restarts, false);
     ImGui::SameLine();
-    draw_action(app, can_go_on ? "next-step" : "skip-step", goes_on, can_go_on);
+    ImGui::BeginDisabled(lesson.is_step_done() && !can_go_on);  // there is time to read
+    draw_action(app, lesson.is_step_done() ? "next-step" : "skip-step", goes_on, can_go_on);
+    ImGui::EndDisabled();
 }
 
 // How near the person is to the goal, as a bar; filled again by the time for which it must be kept.
@@ -51,7 +55,7 @@ void draw_goal(const Lesson& lesson) {
     if (!value) return;
     const LessonStepDescription& step = lesson.steps()[lesson.current()];
     const LessonGoal goal = describe_goal(step, *value, lesson.start().value_or(*value));
-    ImGui::TextWrapped("%s   %s", goal.now.c_str(), goal.goal.c_str());
+    write_wrapped(goal.now + "; " + goal.goal);
     const bool is_kept = goal.share >= 1 && step.for_s > 0;
     const double share = lesson.is_step_done() ? 1 : is_kept ? lesson.share() : goal.share;
     ImGui::PushStyleColor(ImGuiCol_PlotHistogram,
@@ -62,12 +66,18 @@ void draw_goal(const Lesson& lesson) {
 
 void draw_text(const Lesson& lesson) {
     const LessonStepDescription& step = lesson.steps()[lesson.current()];
-    ImGui::TextWrapped("%s", step.text.c_str());
+    write_wrapped(step.text);
     ImGui::PushStyleColor(ImGuiCol_Text, lesson.is_step_done() ? colours().done : colours().task);
-    ImGui::TextWrapped("%s%s", lesson.is_step_done() ? translated("Done: ") : "",
-                       step.task.c_str());
+    write_wrapped((lesson.is_step_done() ? translated("Done: ") : "") + step.task);
     ImGui::PopStyleColor();
     draw_goal(lesson);
+    if (step.question && lesson.chosen()) write_explanation(*step.question, *lesson.chosen());
+}
+
+float share_of_text(const LessonStepDescription& step) {
+    if (step.question) return beside_question;
+    if (step.plot == LessonPlot::Map) return beside_map;
+    return step.plot == LessonPlot::None ? 1 : beside_plot;
 }
 
 void draw_beside(World& app) {
@@ -87,12 +97,11 @@ void draw_beside(World& app) {
 void draw_step(World& app) {
     const Lesson& lesson = app.resource<LessonState>().lesson;
     const LessonStepDescription& step = lesson.steps()[lesson.current()];
-    const bool has_two = step.question || step.plot != LessonPlot::None;
-    const float width = has_two ? text_share * ImGui::GetContentRegionAvail().x : 0;
+    const float share = share_of_text(step), width = share * ImGui::GetContentRegionAvail().x;
     ImGui::BeginChild(fmt::format("text {}", lesson.current()).c_str(), {width, 0});
     draw_text(lesson);
     ImGui::EndChild();
-    if (!has_two) return;
+    if (share == 1) return;
     ImGui::SameLine();
     ImGui::BeginChild(fmt::format("beside {}", lesson.current()).c_str());
     draw_beside(app);
@@ -140,10 +149,8 @@ bool is_lesson_there(const World& app) {
 // Letters of answers, while there is a question, do nothing else.
 bool press_in_lesson(World& app, const KeyPress& press) {
     Lesson& lesson = app.write<LessonState>().lesson;
-    const auto& front = app.resource<Docks>().front;
-    const auto seen = front.find(Side::Bottom);
-    if (seen == front.end() || seen->second != "lesson") return false;
-    if (lesson.is_done() || press.control || types_text()) return false;
+    if (!is_panel_seen(app, "lesson") || lesson.is_done() || press.control || types_text())
+        return false;
     const auto& question = lesson.steps()[lesson.current()].question;
     if (!question || press.key < Key::A) return false;
     const auto answer = static_cast<std::size_t>(press.key) - static_cast<std::size_t>(Key::A);

@@ -34,14 +34,22 @@ constexpr std::array sizes{Size{"1920 x 1080", 1920, 1080}, Size{"3840 x 2160", 
 void save_picture(World& app) {
     close_panel(app, "picture");
     const CleanPicture wanted = panel_state<PictureChoice>(app).picture;
+    const std::uint64_t samples = std::uint64_t{wanted.width} * wanted.height * wanted.samples;
+    if (samples > most_picture_samples)
+        return tell(
+            app,
+            format_translated("a picture of {} x {} pixels is too large; expected {} million "
+                              "at most, a fourth of it with smooth edges",
+                              wanted.width, wanted.height, most_picture_samples / 1'000'000),
+            long_notice_s);
     try {
         const std::filesystem::path file =
             find_free_name(options_of(app).files_folder, "palpa-picture", {".png"});
-        write_png(file, draw_clean_picture(app, wanted));
-        tell(app,
-             format_translated("saved {}: {} x {} pixels", file.string(), wanted.width,
-                               wanted.height),
-             long_notice_s);
+        std::string problem;
+        write_png(file, draw_clean_picture(app, wanted, &problem));
+        const std::string saved = format_translated("saved {}: {} x {} pixels", file.string(),
+                                                    wanted.width, wanted.height);
+        tell(app, problem.empty() ? saved : saved + "\n" + problem, long_notice_s);
     } catch (const LoadError& error) {
         tell(app, error.what(), long_notice_s);
     } catch (const GpuError& error) {
