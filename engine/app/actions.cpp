@@ -111,7 +111,7 @@ void go_back(World& app) {
     if (measures(app)) return measure_or_end(app);
     if (close_something(app) || end_tour(app) || end_selection(app)) return;
     if (!shows_docks(app)) return toggle_docks(app);
-    tell(app, translated("nothing is open; Ctrl+Q quits"));
+    tell(app, translated("nothing is open; Ctrl+O goes to the start screen, Ctrl+Q quits"));
 }
 
 template <CouplingMode mode>

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 
 namespace palpa {
 namespace {
@@ -34,27 +35,37 @@ void change_measured(World& app, const LiveSettings& settings) {
 void set_period(World& app) {
     SceneMeasure& measure = app.write<SceneMeasure>();
     measure.measures_period = false;
+    if (app.resource<SettingsState>().now.period_ms != scene_of(app).period_ms)
+        return;  // the person has chosen another
     const double p99_ms =
         ordinary_p99(find_quantile(measure.step_ms, 0.5), find_quantile(measure.step_ms, 0.99));
     LiveSettings settings = app.resource<SettingsState>().now;
     settings.period_ms = choose_period_ms(p99_ms);
     if (settings.period_ms == app.resource<SettingsState>().now.period_ms) return;
     change_measured(app, settings);
-    tell(app, format_translated("steps take {:.1f} ms here, so the period is {:.0f} ms now", p99_ms,
-                                settings.period_ms));
+    tell(app,
+         format_translated("steps take {:.1f} ms here, so the period is {:.0f} ms now", p99_ms,
+                           settings.period_ms),
+         long_notice_s);
 }
 
 void set_gains(World& app) {
     SceneMeasure& measure = app.write<SceneMeasure>();
     measure.measures_gains = false;
-    if (app.resource<SettingsState>().now.coupling.feel_pN != scene_of(app).coupling.feel_pN)
+    const auto& now = app.resource<SettingsState>().now.coupling;
+    if (now.mode != CouplingMode::Guarded || now.feel_pN != scene_of(app).coupling.feel_pN)
         return;  // the person has chosen others
     const double strong_pN = find_quantile(measure.force_pN, 0.95);
     LiveSettings settings = app.resource<SettingsState>().now;
+    const std::optional<std::array<double, 2>> before = settings.coupling.feel_pN;
     settings.coupling.feel_pN = choose_range(strong_pN);
+    if (settings.coupling.feel_pN == before) return;
     change_measured(app, settings);
-    tell(app, format_translated("forces here reach {:.0f} pN: a tenth of that is felt as 0.3 N now",
-                                strong_pN));
+    tell(app,
+         format_translated("forces here reach {:.0f} pN: a tenth of that is felt as 0.3 N now; "
+                           "change it with \"strength\" (panel Hand)",
+                           strong_pN),
+         long_notice_s);
 }
 
 }  // namespace
@@ -70,7 +81,7 @@ void measure_scene(World& app) {
     const SceneMeasure& begun = app.resource<SceneMeasure>();
     if (!begun.measures_period && !begun.measures_gains) return;
     const Readout& readout = frame_of(app).readout;
-    if (!has_frame(app) || is_replay(app) || app.resource<Dialogs>().question ||
+    if (!has_frame(app) || is_replay(app) || is_study(app) || app.resource<Dialogs>().question ||
         !readout.holds_something || readout.paused || readout.steps == begun.steps)
         return;
     SceneMeasure& measure = app.write<SceneMeasure>();

@@ -16,7 +16,7 @@ struct SceneMeasure {
     std::uint64_t steps = 0;         // at the last look
 };
 
-// `machine`: this one (core/machine.h).
+// Decides what to measure on this machine (core/machine.h).
 SceneMeasure begin_measure(const std::string& measured_on, const std::string& machine);
 
 // Call once a frame. Changes the settings once enough was seen, and says so; the change need not be

@@ -110,7 +110,9 @@ std::vector<std::string> list_warnings(World& app) {
         warnings.emplace_back(translated(
             "a force was not finite, so the force is off until you reset the scene (R)"));
     const bool feels = readout.holds_something && !tick.stopped;
-    if (tick.reason != SafetyStage::None && feels)
+    // A mouse has no handle to hold.
+    const bool is_told = tick.reason != SafetyStage::Engaging || !hand.is_led();
+    if (tick.reason != SafetyStage::None && feels && is_told)
         warnings.emplace_back(translated(describe(tick.reason).data()));
     if (tick.stage >= SafetyStage::ThermalLimit && tick.stage != tick.reason && feels)
         warnings.emplace_back(translated(describe(tick.stage).data()));

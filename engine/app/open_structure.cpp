@@ -1,5 +1,7 @@
 #include "app/open_structure.h"
 
+#include "app/scene_cards.h"
+#include "core/files.h"
 #include "core/load_error.h"
 #include "core/text.h"
 #include "core/translate.h"
@@ -10,7 +12,9 @@
 #include "scene/find_scene.h"
 #include "ui/file_browser.h"
 #include "ui/layout.h"
+#include "view/orbit_camera.h"
 #include "view/preview.h"
+#include "view/worded_picture.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -251,7 +255,7 @@ std::optional<std::size_t> ask_for_hand(WindowShell& shell, const Structure& str
         ImGui::Spacing();
         if (ImGui::Button(labelled("Go on (Enter)").c_str())) goes_on = true;
         ImGui::SameLine();
-        if (ImGui::Button(labelled("Back (Esc)").c_str())) goes_on = false;
+        if (ImGui::Button(labelled("Cancel (Esc)").c_str())) goes_on = false;
         ImGui::End();
     };
     const auto press = [&](Key key) {
@@ -272,8 +276,9 @@ struct MadeReport {
     bool has_scene = false;
 };
 
-// Whether the person goes on to the scene.
-bool show_report(WindowShell& shell, const MadeReport& report) {
+// Whether the person goes on to the scene, or discards it; nothing: the window closes, or there is
+// no scene.
+std::optional<bool> show_report(WindowShell& shell, const MadeReport& report) {
     std::optional<bool> goes_on;
     bool shows_details = !report.has_scene;
     const auto draw = [&] {
@@ -285,7 +290,9 @@ bool show_report(WindowShell& shell, const MadeReport& report) {
         if (ImGui::Button(labelled("Feel it (Enter)").c_str())) goes_on = true;
         ImGui::EndDisabled();
         ImGui::SameLine();
-        if (ImGui::Button(labelled("Back (Esc)").c_str())) goes_on = false;
+        const char* const leaves =
+            report.has_scene ? for_translation("Discard it (Esc)") : for_translation("Back (Esc)");
+        if (ImGui::Button(labelled(leaves).c_str())) goes_on = false;
         ImGui::End();
     };
     const auto press = [&](Key key) {
@@ -294,7 +301,7 @@ bool show_report(WindowShell& shell, const MadeReport& report) {
         if (key == Key::D) shows_details = !shows_details;
     };
     run_page(shell, press, draw, [&] { return goes_on.has_value(); });
-    return goes_on.value_or(false);
+    return report.has_scene ? goes_on : std::nullopt;
 }
 
 void apply(Remedy remedy, std::span<const UnknownResidue> residues, PrepareSettings& settings) {
@@ -383,7 +390,10 @@ std::optional<Structure> read_and_show(WindowShell& shell, const fs::path& file)
     Structure structure;
     const bool is_done =
         shell.work(format_translated("Reading {}", file.filename().string()),
-                   [&](const StageFunction& /*on_stage*/) { structure = read_structure(file); });
+                   [&](const StageFunction& on_stage) {
+                       structure = read_structure(file);
+                       tell(on_stage, for_translation("reading the structure"));  // or cancelled
+                   });
     if (!is_done) return std::nullopt;
     shell.show_behind(build_preview(structure));
     return structure;
@@ -391,7 +401,10 @@ std::optional<Structure> read_and_show(WindowShell& shell, const fs::path& file)
 
 // Lets the person choose, where there is a choice; nothing where they changed their mind.
 std::optional<HandOffer> choose_hand_for(WindowShell& shell, const MadeScene& made, bool asks) {
-    std::vector<HandOffer> offers = list_hands(made.system);
+    std::vector<HandOffer> offers;
+    if (!shell.work(translated("Looking for what a hand may hold"),
+                    [&](const StageFunction& /*on_stage*/) { offers = list_hands(made.system); }))
+        return std::nullopt;
     if (offers.empty()) return HandOffer{};
     std::optional<std::size_t> chosen = 0;
     if (asks && offers.size() > 1) chosen = ask_for_hand(shell, made.system.structure, offers);
@@ -420,6 +433,28 @@ struct WrittenScene {
     HandOffer in_hand;
 };
 
+// Draws the picture that the start screen shows of the scene until it was open.
+void keep_card_picture(WindowShell& shell, const WrittenScene& written) {
+    const fs::path file = find_card_picture(written.folder / "scene.toml");
+    if (file.empty() || !shell.graphics() || written.made.scene.files.empty()) return;
+    WordedFrame frame{build_preview(written.made.system.structure, written.in_hand.atoms), {}};
+    OrbitCamera camera;
+    const float aspect = static_cast<float>(card_picture_width) / card_picture_height;
+    frame_all(camera, frame.scene, {aspect, 1});
+    frame.scene.camera = frame_camera(camera, frame.scene);
+    std::optional<TextPainter> no_words;
+    try {
+        shell.graphics()->swapchain.wait();  // the renderer's last frame is done
+        const Picture picture =
+            draw_worded(shell.graphics()->renderer, {card_picture_width, card_picture_height, 4},
+                        frame, no_words);
+        make_folder(file.parent_path());
+        write_png(file, picture, Existing::Replace);
+    } catch (const GpuError&) {  // then the card has none
+    } catch (const LoadError&) {
+    }
+}
+
 // Asks what the person will hold if `asks`. Returns nothing where it was cancelled.
 std::optional<WrittenScene> prepare_below(WindowShell& shell, SceneRequest request,
                                           const fs::path& folder, bool asks) {
@@ -431,15 +466,18 @@ std::optional<WrittenScene> prepare_below(WindowShell& shell, SceneRequest reque
     if (!in_hand) return std::nullopt;
     request.grab = in_hand->grab;
     shell.show_behind(build_preview(made->system.structure, in_hand->atoms));
-    const std::string title =
-        format_translated("Preparing {}", request.structure.filename().string());
-    if (!shell.work(title,
-                    [&](const StageFunction& on_stage) { add_scene(request, on_stage, *made); }))
-        return std::nullopt;
     WrittenScene written{std::move(*made), find_free_folder(folder, request.structure),
                          std::move(*in_hand)};
+    request.title = written.folder.filename().string();
+    const std::string title =
+        format_translated("Preparing {}", request.structure.filename().string());
+    const auto add = [&](const StageFunction& on_stage) {
+        add_scene(request, on_stage, written.made);
+    };
+    if (!shell.work(title, add)) return std::nullopt;
     write_prepared(written.made.system, written.folder, written.made.title,
                    written.made.scene.files);
+    keep_card_picture(shell, written);
     return written;
 }
 
@@ -476,11 +514,12 @@ std::optional<fs::path> open_structure(WindowShell& shell, std::span<const fs::p
     if (!said.empty()) report.lines.insert(report.lines.begin(), said);
     shell.show_behind(build_preview(written->made.system.structure, written->in_hand.atoms),
                       1 - page_share);
-    if (!show_report(shell, report)) {
+    const std::optional<bool> goes_on = show_report(shell, report);
+    if (goes_on == false) {
         std::error_code error;
         fs::remove_all(written->folder, error);  // it was made just now
-        return std::nullopt;
     }
+    if (!goes_on.value_or(false)) return std::nullopt;
     return written->folder / "scene.toml";
 }
 
@@ -499,7 +538,7 @@ PreparedEach prepare_each(WindowShell& shell, std::span<const std::vector<fs::pa
             if (!written) {
                 note_problem(
                     format_translated("{} was not prepared.", group[0].filename().string()));
-                if (shell.window().should_close()) break;
+                break;
             } else if (written->made.scene.files.empty()) {
                 note_problem(format_translated("No scene could be made from {}; see {}.",
                                                group[0].filename().string(),
@@ -508,7 +547,7 @@ PreparedEach prepare_each(WindowShell& shell, std::span<const std::vector<fs::pa
                 made.push_back(written->folder.filename().string());
             }
         } catch (const LoadError& error) {
-            note_problem(error.what());
+            note_problem(without_options(error.what()));
         }
     }
     if (!made.empty())

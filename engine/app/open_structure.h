@@ -11,9 +11,9 @@
 
 namespace palpa {
 
-// Files of one scene each: structures apart, a topology with the structure of its name, parameters
-// with every structure, any other file alone. One group of all where there is one structure at
-// most.
+// Groups the files of one scene each: structures apart, a topology with the structure of its name,
+// parameters with every structure, any other file alone. One group of all where there is one
+// structure at most.
 std::vector<std::vector<std::filesystem::path>> split_structures(
     std::span<const std::filesystem::path> files);
 

@@ -434,7 +434,7 @@ void StartScreen::draw_side() {
     ImGui::TextWrapped(
         "%s",
         translated("PDB or mmCIF (also .gz), CHARMM coordinates, or a scene; or drop one here. "
-                   "A structure is completed first, which takes a few seconds."));
+                   "A structure is completed first, which takes seconds to minutes."));
     draw_sound_question();
     draw_recovered();
     draw_recent();

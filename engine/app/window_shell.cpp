@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <future>
 #include <mutex>
 #include <numbers>
@@ -32,6 +33,18 @@ constexpr double panel_frames_per_s = 60;
 
 // Ends a task at its next stage.
 struct Cancelled {};
+
+// Draws a part that goes to and fro in the bar drawn last: work of unknown length goes on.
+void draw_moving_part(double seconds) {
+    constexpr float part = 0.2F, way_s = 1.5F;
+    const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+    const float width = to.x - from.x;
+    const float phase = std::fmod(static_cast<float>(seconds) / way_s, 2.0F);
+    const float left = from.x + (1 - std::abs(1 - phase)) * (1 - part) * width;
+    ImGui::GetWindowDrawList()->AddRectFilled({left, from.y}, {left + part * width, to.y},
+                                              ImGui::GetColorU32(ImGuiCol_PlotHistogram),
+                                              ImGui::GetStyle().FrameRounding);
+}
 
 // How far a task is, between its thread and the window's.
 class TaskProgress {
@@ -60,6 +73,7 @@ public:
                 "%s",
                 fmt::format("{}{}, {:.0f} s", translated(stage_.c_str()), share, seconds).c_str());
             ImGui::ProgressBar(static_cast<float>(share_.value_or(0)), {-1, scaled(8)}, "");
+            if (!share_) draw_moving_part(seconds);
         }
         if (is_cancelled) {
             ImGui::TextDisabled("%s", translated("cancelling"));

@@ -62,7 +62,7 @@ TunedScene find_scene(const SceneRequest& request, const std::string& title,
         return tune_scene(system, request.grab, request.settings.align.has_value(),
                           request.measures, printable(name), title, on_stage);
     } catch (const LoadError& error) {
-        if (!request.grab.empty()) throw;
+        if (!request.grab.empty() && request.measures) throw;  // a window offers what is there
         system.report.warn(fmt::format("no scene was written: {}", error.what()));
         return {};
     }

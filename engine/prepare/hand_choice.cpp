@@ -242,6 +242,7 @@ std::vector<HandChoice> list_hand_choices(const Structure& structure,
         if (segments.size() > 1 && segment->atoms.size() <= most_in_hand)
             add(hold_all(structure, *segment, "a molecule of its own"));
     for (const SystemSegment* const segment : molecules) {
+        if (choices.size() >= most) break;
         const bool has_residues = split_residues(structure, segment->atoms).size() > 1;
         if (has_residues) add(hold_most_exposed(structure, *segment));
     }

@@ -38,8 +38,9 @@ std::vector<HandChoice> list_hand_choices(const Structure& structure,
                                           std::span<const SystemSegment> segments,
                                           std::size_t most = 6);
 
-// The choice in the form that `grab` of choose_hand takes.
+// Describes the choice as its `words` do, in the language in use (core/translate.h).
 std::string translated_words(const Structure& structure, const HandChoice& choice);
+// Returns the choice in the form that `grab` of choose_hand takes.
 std::string grab_of(const HandChoice& choice);
 
 // The residue of the largest molecule that moves most easily, by the same rule.

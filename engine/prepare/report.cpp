@@ -52,6 +52,14 @@ std::size_t find_option(std::string_view text) {
     return text.npos;
 }
 
+// Finds where the words after "--grab A:1: " begin, which say what is wrong with an option.
+std::size_t find_reason(std::string_view text, std::size_t option) {
+    const std::size_t colon = text.find(": ", option);
+    if (colon == text.npos) return colon;
+    const std::string_view named = text.substr(option, colon - option);
+    return std::ranges::count(named, ' ') <= 1 ? colon + 2 : text.npos;
+}
+
 }  // namespace
 
 std::string without_options(std::string_view text) {
@@ -76,11 +84,18 @@ std::string without_options(std::string_view text) {
     }
     // A clause with an option, up to the next one.
     for (std::size_t option; (option = find_option(plain)) != plain.npos;) {
+        if (const std::size_t reason = find_reason(plain, option); reason != plain.npos) {
+            plain.erase(option, reason - option);
+            continue;
+        }
         std::size_t begin = 0;
         for (const std::string_view mark : {"; ", ": ", ", or ", ", "}) {
             const std::size_t found = plain.rfind(mark, option);
             if (found != plain.npos) begin = std::max(begin, found);
         }
+        // A purpose goes with its option: "; to charge it: --protonation A:12=HSP".
+        const std::size_t clause = plain.rfind("; to ", option);
+        if (clause != plain.npos && plain.find("; ", clause + 2) >= option) begin = clause;
         const std::size_t end = std::min(plain.find("; ", option), plain.size());
         plain.erase(begin, end - begin);
     }

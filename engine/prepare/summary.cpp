@@ -21,7 +21,8 @@ std::size_t count_residues(const Structure& structure, const SystemSegment& segm
     return count;
 }
 
-// Chains of one length together, molecules of one residue by its name, waters by their number.
+// Counts chains of one length together, molecules of one residue by its name, waters by their
+// number.
 std::string describe_parts(const PreparedSystem& system) {
     struct Part {
         std::string name;
@@ -61,8 +62,10 @@ PreparedSummary summarise(const PreparedSystem& system) {
     PreparedSummary summary;
     const std::size_t atoms = system.structure.names.size();
     summary.is = format_translated("{}; {} atoms", describe_parts(system), atoms);
-    summary.added = format_translated("{} hydrogens, {} other atoms", system.built_hydrogens,
-                                      system.built_heavy);
+    summary.added = system.built_hydrogens + system.built_heavy == 0
+                        ? std::string(translated("nothing"))
+                        : format_translated("{} hydrogens, {} other atoms", system.built_hydrogens,
+                                            system.built_heavy);
     const auto& warnings = system.report.warnings();
     summary.look_first = warnings.empty() ? std::string(translated("nothing that needs a look"))
                                           : without_options(warnings.front());

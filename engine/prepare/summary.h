@@ -7,8 +7,8 @@
 namespace palpa {
 
 struct PreparedSummary {
-    std::string is;          // "2 chains of 99 residues, MK1, 127 waters; 3,236 atoms"
-    std::string added;       // "1,624 hydrogens and 12 other atoms"; "nothing"
+    std::string is;          // "2 x chain of 99 residues, MK1, 127 waters; 3236 atoms"
+    std::string added;       // "1624 hydrogens, 12 other atoms"; "nothing"
     std::string look_first;  // the first warning; "nothing that needs a look"
 };
 

@@ -2,6 +2,7 @@
 
 #include "charmm/generate.h"
 #include "core/load_error.h"
+#include "core/machine.h"
 #include "core/text.h"
 #include "formats/crd.h"
 #include "formats/psf.h"
@@ -343,6 +344,8 @@ SavedScene describe_world(const World& world, const fs::path& file) {
     scene.statics.relaxes_start = false;
     keep_couplings(world, scene);
     scene.period_ms = std::round(world.resource<Clock>().period_s * 1e3);
+    // Period and gains that were saved are not measured again here.
+    if (!scene.measured_on.empty()) scene.measured_on = machine_name();
     keep_coming_edits(world, scene);
 
     scene.molecules.clear();

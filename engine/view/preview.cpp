@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,6 +20,7 @@ namespace {
 
 constexpr float trace_radius = 0.5F, ball_radius = 0.4F, preview_stick = 0.16F,
                 marked_radius = 0.6F;
+constexpr std::size_t most_between = 40, shortest_trace = 4;
 constexpr double longest_bond = 2.0, longest_gap = 8.0;  // Å, between atoms; along a chain
 
 std::string element_of_atom(const Structure& structure, std::size_t atom) {
@@ -40,7 +42,26 @@ bool is_shown(const Structure& structure, std::size_t atom) {
     return element_of_atom(structure, atom) != "H";
 }
 
-bool is_on_trace(const AtomName& name) { return name.atom == "CA" || name.atom == "P"; }
+// Finds the atom of a residue that its chain's trace goes through: CA of an amino acid, P of a
+// nucleotide. A calcium, which is called CA too, a phosphate and a cofactor have none.
+std::optional<std::size_t> find_trace_atom(const Structure& structure, std::size_t begin,
+                                           std::size_t end) {
+    const auto find = [&](std::string_view name) -> std::optional<std::size_t> {
+        for (std::size_t atom = begin; atom < end; ++atom)
+            if (structure.names[atom].atom == name && is_shown(structure, atom)) return atom;
+        return std::nullopt;
+    };
+    const std::optional<std::size_t> carbon = find("CA");
+    const bool is_amino_acid =
+        carbon && element_of_atom(structure, *carbon) == "C" && (end - begin == 1 || find("N"));
+    if (is_amino_acid) return carbon;
+    return find("C1'") && find("O3'") ? find("P") : std::nullopt;
+}
+
+struct ResidueRange {
+    std::size_t begin, end;
+    std::optional<std::size_t> trace;
+};
 
 void add_trace(const Structure& structure, std::span<const std::uint32_t> atoms,
                FrameScene& frame) {
@@ -58,7 +79,7 @@ void add_trace(const Structure& structure, std::span<const std::uint32_t> atoms,
     }
 }
 
-// Bonds by distance, within a residue; neighbours in the file are close to each other.
+// Bonds by distance, to atoms of the same segment that stand near in the file.
 void add_small(const Structure& structure, std::span<const std::uint32_t> atoms,
                FrameScene& frame) {
     for (std::size_t i = 0; i < atoms.size(); ++i) {
@@ -66,8 +87,9 @@ void add_small(const Structure& structure, std::span<const std::uint32_t> atoms,
         const glm::vec3 place = as_float(structure.positions[atoms[i]]);
         const glm::vec3 colour = look_of(element_of_atom(structure, atoms[i])).colour;
         frame.spheres.push_back({place, ball_radius, colour});
-        for (std::size_t k = i + 1;
-             k < atoms.size() && is_same_residue(structure.names[atoms[k]], name); ++k) {
+        for (std::size_t k = i + 1; k < std::min(atoms.size(), i + most_between) &&
+                                    structure.names[atoms[k]].segment == name.segment;
+             ++k) {
             const Vec3& other = structure.positions[atoms[k]];
             if ((other - structure.positions[atoms[i]]).norm() < longest_bond)
                 add_stick(place, as_float(other), {preview_stick, colour}, frame);
@@ -78,24 +100,27 @@ void add_small(const Structure& structure, std::span<const std::uint32_t> atoms,
 }  // namespace
 
 FrameScene build_preview(const Structure& structure, std::span<const std::uint32_t> marked) {
-    FrameScene frame;
-    std::vector<std::uint32_t> trace, small;
+    std::vector<ResidueRange> residues;
+    std::map<std::string, std::size_t> lengths;  // of each segment's trace
     for (std::size_t i = 0; i < structure.names.size();) {
         std::size_t end = i;
-        bool is_of_chain = false;
-        for (; end < structure.names.size() &&
-               is_same_residue(structure.names[i], structure.names[end]);
-             ++end)
-            is_of_chain = is_of_chain || is_on_trace(structure.names[end]);
-        const bool is_ion = end - i == 1;  // a calcium is called CA
-        for (std::size_t atom = i; atom < end; ++atom) {
-            if (!is_shown(structure, atom)) continue;
-            const bool is_traced = is_of_chain && !is_ion;
-            if (is_traced && !is_on_trace(structure.names[atom])) continue;
-            (is_traced ? trace : small).push_back(static_cast<std::uint32_t>(atom));
-        }
+        while (end < structure.names.size() &&
+               is_same_residue(structure.names[i], structure.names[end]))
+            ++end;
+        residues.push_back({i, end, find_trace_atom(structure, i, end)});
+        lengths[structure.names[i].segment] += residues.back().trace.has_value();
         i = end;
     }
+    std::vector<std::uint32_t> trace, small;
+    for (const ResidueRange& residue : residues) {
+        const bool is_traced =
+            residue.trace && lengths[structure.names[residue.begin].segment] >= shortest_trace;
+        for (std::size_t atom = residue.begin; atom < residue.end; ++atom) {
+            if (!is_shown(structure, atom) || (is_traced && atom != *residue.trace)) continue;
+            (is_traced ? trace : small).push_back(static_cast<std::uint32_t>(atom));
+        }
+    }
+    FrameScene frame;
     add_trace(structure, trace, frame);
     add_small(structure, small, frame);
     for (const std::uint32_t atom : marked)

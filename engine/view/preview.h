@@ -9,9 +9,9 @@
 
 namespace palpa {
 
-// Without waters and hydrogens; of several models or alternate locations the first. The marked
-// atoms are drawn as balls in the colour of what is in hand, whatever else they are. The caller
-// sets the camera.
+// Leaves out waters and hydrogens; of several models or alternate locations it draws the first. The
+// marked atoms are drawn as balls in the colour of what is in hand, whatever else they are. The
+// caller sets the camera.
 FrameScene build_preview(const Structure& structure, std::span<const std::uint32_t> marked = {});
 
 }  // namespace palpa

@@ -72,9 +72,11 @@ TEST_CASE("gains that the person chose stay, and nothing changes behind a questi
     screen.app.write<Dialogs>().question.reset();
     LiveSettings chosen = settings_of(screen);
     chosen.coupling.feel_pN = {20, 600};
+    chosen.period_ms = 40;
     change_settings(screen.app, chosen);
     for (int i = 0; i < 700; ++i) add_step(screen, 1, 100);
     CHECK((*settings_of(screen).coupling.feel_pN)[0] == 20);
+    CHECK(settings_of(screen).period_ms == 40);
 }
 
 TEST_CASE("what is measured here, or wanted as it is, stays", "[app][measure]") {

@@ -147,8 +147,12 @@ class StartScreen(WindowCase):
         with Display() as display:
             self.start(display)
             display.drop(self.wait_for(display, "Palpa"), structure)
-            # Something green is in the picture: what the hand would hold.
-            self.wait_until(lambda: self.count_greens(self.screenshot(display)) > 300, "the question")
+            def is_asked():
+                """Something green is in the picture, what the hand would hold, and no card is chosen."""
+                picture = self.screenshot(display)
+                return not self.has_chosen_card(picture) and self.count_greens(picture) > 300
+
+            self.wait_until(is_asked, "the question")
             first = read_png(self.screenshot(display))
             self.wait_until(lambda: read_png(self.screenshot(display)) != first, "a picture that turns")
             display.do("key", "Down")

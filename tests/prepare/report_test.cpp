@@ -24,6 +24,13 @@ TEST_CASE("a window says nothing of options of the command line", "[prepare]") {
           "in the scene the emulated hand felt up to 0.10 N; expected 0.3 N at least");
     CHECK(without_options("HIS 12 (A): neutral") == "HIS 12 (A): neutral");
     CHECK(without_options("all as it is") == "all as it is");
+    CHECK(without_options("HIS 12 may be charged; to charge it: --protonation A:12=HSP") ==
+          "HIS 12 may be charged");
+    CHECK(without_options("lig.sdf: --ligand: matches none of the residues; expected the same "
+                          "heavy atoms") ==
+          "lig.sdf: matches none of the residues; expected the same heavy atoms");
+    CHECK(without_options("a.pdb: --grab X: no such segment or residue") ==
+          "a.pdb: no such segment or residue");
     CHECK(without_options("my--file.pdb: is empty") == "my--file.pdb: is empty");
 
     Report report;

@@ -115,6 +115,14 @@ StartOptions build_start(PreferencesFile& preferences, const RunOptions& options
     return start;
 }
 
+void refuse_other_file(const fs::path& file) {
+    std::error_code error;
+    if (fs::is_regular_file(file, error) && !can_be_opened(file))
+        throw LoadError({file.string()},
+                        fmt::format("is neither a scene nor a structure; expected {}, also .gz",
+                                    fmt::join(list_endings(), ", ")));
+}
+
 void refuse_scene_among(const std::vector<fs::path>& files) {
     for (const fs::path& file : files) {
         if (files.size() > 1 && file.extension() == ".toml")
@@ -145,6 +153,7 @@ std::optional<NextScreen> show_files(std::optional<WindowShell>& shell,
                                      const std::string& said = {}) {
     if (const std::optional<fs::path> folder = find_recording(files))
         return show_recording(*shell, preferences, *folder, options);
+    if (files.size() == 1) refuse_other_file(files[0]);
     refuse_scene_among(files);
     if (const auto groups = split_structures(files); groups.size() > 1) {
         PreparedEach each = prepare_each(*shell, groups, prepared_folder(options));

@@ -30,7 +30,7 @@ const char* effect_of(bool on_axis, double force) {
 
 void draw_bar(const char* name, double value, double full, const std::string& text, ImU32 colour,
               const char* explanation) {
-    ImGui::TextWrapped("%s: %s", name, text.c_str());
+    write_wrapped(std::string(name) + ": " + text);
     tip(explanation);
     ImGui::PushStyleColor(ImGuiCol_PlotHistogram, colour);
     const auto share = static_cast<float>(full > 0 ? std::abs(value) / full : 0);
