@@ -86,7 +86,7 @@ void measure_scene(World& app) {
         return;
     SceneMeasure& measure = app.write<SceneMeasure>();
     measure.steps = readout.steps;
-    measure.step_ms.push_back(readout.step_ms);
+    if (measure.measures_period) measure.step_ms.push_back(readout.step_ms);
     const double force_pN = 1e12 * led_hand(app).contact.force_newton.norm();
     if (force_pN > least_force_pN) measure.force_pN.push_back(force_pN);
     if (measure.measures_period && measure.step_ms.size() >= enough_steps) set_period(app);

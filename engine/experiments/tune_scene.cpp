@@ -224,28 +224,28 @@ void set_coupling(const Played& first, Tuning& tuning) {
         first.strong_pN);
 }
 
-constexpr std::string_view scene_heading = "Scene";
+constexpr std::string_view scene_heading = "Scene";  // of the report
 
 void report_hand(const Tuning& tuning, Report& report) {
-    constexpr std::string_view heading = scene_heading;
     const HandChoice& hand = tuning.copy.hand;
     report.add(
-        heading,
+        scene_heading,
         fmt::format(
             "in the hand: {} ({}; to choose another: --grab SEGMENT:RESIDUE or --grab SEGMENT)",
             hand.words, hand.reason));
     if (!tuning.tuning.region_note.empty()) {
-        report.add(heading, fmt::format("joints.region_angstrom = {} around the hand: {}",
-                                        *tuning.tuning.region_angstrom, tuning.tuning.region_note));
+        report.add(scene_heading,
+                   fmt::format("joints.region_angstrom = {} around the hand: {}",
+                               *tuning.tuning.region_angstrom, tuning.tuning.region_note));
     }
     for (const std::vector<std::string>& names : tuning.copy.joined) {
         report.add(
-            heading,
+            scene_heading,
             fmt::format("segments bonded to each other, which form one molecule of the scene: {}",
                         fmt::join(names, ", ")));
     }
     report.add(
-        heading,
+        scene_heading,
         fmt::format("{} joints can turn, in {}; relaxed from {:.2f} to {:.2f} kcal/mol in {} "
                     "steps, largest move of an atom {:.2f} Å (relaxed.crd)",
                     tuning.joints,
@@ -253,25 +253,28 @@ void report_hand(const Tuning& tuning, Report& report) {
                     tuning.relaxed.energy_before, tuning.relaxed.energy_after, tuning.relaxed.steps,
                     tuning.relaxed.largest_move));
     if (tuning.relaxed.end != RelaxEnd::Converged) {
-        report.add(heading, fmt::format("not yet at rest: an rms force of {:.3g} kcal/mol per "
-                                        "radian and Å remains; relax further with palpa relax",
-                                        tuning.relaxed.rms_force));
+        report.add(scene_heading,
+                   fmt::format("not yet at rest: an rms force of {:.3g} kcal/mol per "
+                               "radian and Å remains; relax further with palpa relax",
+                               tuning.relaxed.rms_force));
     }
 }
 
 void report_scene(const Played& played, const Tuning& tuning, Report& report) {
-    constexpr std::string_view heading = scene_heading;
     report_hand(tuning, report);
     if (const auto range = tuning.tuning.feel_pN) {
-        report.add(heading, fmt::format("guarded coupling; forces of {} to {} pN are felt as 0.3 "
-                                        "to 2.7 N",
-                                        (*range)[0], (*range)[1]));
+        report.add(scene_heading,
+                   fmt::format("guarded coupling; forces of {} to {} pN are felt as 0.3 "
+                               "to 2.7 N",
+                               (*range)[0], (*range)[1]));
     }
-    report.add(heading, fmt::format("period {} ms: {} took {:.2f} ms here", tuning.tuning.period_ms,
-                                    tuning.measured, 1e-3 * tuning.p99_us));
-    report.add(heading, fmt::format("the emulated hand felt up to {:.2f} N and moved what it holds "
-                                    "by {:.2f} Å",
-                                    played.felt_newton, played.moved_angstrom));
+    report.add(scene_heading,
+               fmt::format("period {} ms: {} took {:.2f} ms here", tuning.tuning.period_ms,
+                           tuning.measured, 1e-3 * tuning.p99_us));
+    report.add(scene_heading,
+               fmt::format("the emulated hand felt up to {:.2f} N and moved what it holds "
+                           "by {:.2f} Å",
+                           played.felt_newton, played.moved_angstrom));
     if (played.felt_newton < least_felt || played.moved_angstrom < least_moved) {
         report.warn(fmt::format(
             "in the scene the emulated hand felt up to {:.2f} N and moved what it holds by {:.2f} "

@@ -44,6 +44,12 @@ void reach_goal(Lesson& lesson) {
     for (int i = 0; i < 2100; ++i) lesson.update(reading, mode, measured);
 }
 
+// Keeps each mark of the lesson in `noted`, which outlives the screen's last frame.
+void note_done_marks(WindowScreen& screen, std::vector<bool>& noted) {
+    screen.options.lesson.remember_done = [&](bool is_done) { noted.push_back(is_done); };
+    screen.frames(3);
+}
+
 // How far a part of the panel can be scrolled, pixels.
 float scroll_of(const std::string& part) {
     float most = 0;
@@ -114,8 +120,7 @@ TEST_CASE("a step that is done can be passed over, and the lesson counts as done
           "[app][lesson]") {
     WindowScreen screen;
     std::vector<bool> noted;
-    screen.options.lesson.remember_done = [&](bool is_done) { noted.push_back(is_done); };
-    screen.frames(3);
+    note_done_marks(screen, noted);
     Lesson& lesson = lesson_of(screen);
     for (; !lesson.is_done(); perform(screen.app, "skip-step")) {
         if (const auto& question = lesson.steps()[lesson.current()].question)
@@ -132,8 +137,7 @@ TEST_CASE("a step that is passed over before it is done leaves the lesson withou
           "[app][lesson]") {
     WindowScreen screen;
     std::vector<bool> noted;
-    screen.options.lesson.remember_done = [&](bool is_done) { noted.push_back(is_done); };
-    screen.frames(3);
+    note_done_marks(screen, noted);
     while (!lesson_of(screen).is_done()) perform(screen.app, "skip-step");
     follow_lesson(screen.app);
     CHECK(noted.empty());
